@@ -1,0 +1,156 @@
+"""The words of the field: one name, symbol, unit and physical range for each quantity.
+
+The same names are used in code, model files, data headers, results and documentation. Everything that has to know
+the unit of a name asks here; nothing else in skinbayes states one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A named physical quantity.
+
+    Attributes
+    ----------
+    name : the name used everywhere
+    symbol : the symbol in equations and plots (plain text)
+    unit : SI unit, as written in headers; ``"1"`` for dimensionless numbers
+    meaning : a short description
+    lower, upper : physical range, SI
+    lower_open, upper_open : True if the bound itself is impossible
+    infinite_allowed : True if ``inf`` is a meaningful value (yield stress of an elastic body)
+    none_means : the value that stands for "absent", if absence is meaningful
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    lower: float = 0.0
+    upper: float = inf
+    lower_open: bool = True
+    upper_open: bool = False
+    infinite_allowed: bool = False
+    none_means: float | None = None
+
+    def admits(self, value: float) -> bool:
+        """Tell whether ``value`` (SI) is physically possible."""
+        if value != value:
+            return False
+        if value in (inf, -inf):
+            return self.infinite_allowed and value > 0
+        above = value > self.lower if self.lower_open else value >= self.lower
+        below = value < self.upper if self.upper_open else value <= self.upper
+        return above and below
+
+    def range_text(self) -> str:
+        """The admissible range as text, for messages: ``"> 0 Pa"``, ``"between 0 and 1"``."""
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if self.lower == -inf and self.upper == inf:
+            return "any finite number"
+        if self.upper == inf:
+            return f"{'>' if self.lower_open else '>='} {self.lower:g}{unit}"
+        left = ", excluded," if self.lower_open else ""
+        right = " (excluded)" if self.upper_open else ""
+        return f"between {self.lower:g}{left} and {self.upper:g}{right}{unit}"
+
+
+def _closed(name: str, symbol: str, unit: str, meaning: str, upper: float = inf) -> Quantity:
+    return Quantity(name, symbol, unit, meaning, upper=upper, lower_open=False)
+
+
+_ALL = (
+    # skin
+    Quantity("frictional_shear_stress", "σ_f", "Pa", "shear stress in the area of real contact"),
+    Quantity("young_modulus_layer", "E0", "Pa", "Young's modulus of the stratum corneum"),
+    Quantity("young_modulus_bulk", "E1", "Pa", "Young's modulus of the tissue below"),
+    Quantity("poisson_ratio_layer", "ν0", "1", "Poisson ratio of the stratum corneum", -1.0, 0.5),
+    Quantity("poisson_ratio_bulk", "ν1", "1", "Poisson ratio of the tissue below", -1.0, 0.5),
+    Quantity("layer_thickness", "d", "m", "thickness of the stratum corneum"),
+    Quantity("yield_stress", "σ_Y", "Pa", "penetration hardness; inf is purely elastic", infinite_allowed=True),
+    # roughness
+    Quantity("rms_height", "h_rms", "m", "root-mean-square roughness"),
+    Quantity("hurst_exponent", "H", "1", "Hurst exponent; fractal dimension 3 − H", 0.0, 1.0, upper_open=True),
+    Quantity("wavevector_min", "q0", "1/m", "smallest roughness wavevector"),
+    Quantity("wavevector_rolloff", "q_r", "1/m", "end of the plateau of the power spectrum"),
+    Quantity("wavevector_max", "q1", "1/m", "largest roughness wavevector"),
+    _closed("rms_slope", "s", "1", "root-mean-square slope"),
+    # contact
+    Quantity("wavevector", "q", "1/m", "largest wavevector included"),
+    Quantity("magnification", "ζ", "1", "q/q0", lower=1.0, upper=inf, lower_open=False),
+    Quantity("nominal_pressure", "p0", "Pa", "load over nominal contact area"),
+    Quantity("nominal_contact_area", "A0", "m^2", "nominal (projected) contact area"),
+    _closed("relative_contact_area", "A/A0", "1", "area of real contact over nominal area", 1.0),
+    _closed("relative_contact_area_elastic", "A_el/A0", "1", "elastic part of the contact area", 1.0),
+    _closed("relative_contact_area_plastic", "A_pl/A0", "1", "plastic part of the contact area", 1.0),
+    _closed("plastic_share", "A_pl/A", "1", "share of the contact area that has yielded", 1.0),
+    Quantity("surface_response", "S", "1", "layered response factor: S(0) = E0*/E1*, S(∞) = 1"),
+    Quantity("effective_modulus", "E_eff", "Pa", "plane-strain modulus felt by one wavevector, E0*/S"),
+    Quantity("area_correction", "γ", "1", "Yang–Persson correction; none (= 1) is plain Persson", 0.0, 1.0,
+             none_means=1.0),
+    _closed("mean_separation", "ū", "m", "mean interfacial separation"),
+    # friction experiment
+    _closed("friction_coefficient", "μ", "1", "friction force over normal force"),
+    Quantity("normal_force", "F_N", "N", "normal load"),
+    _closed("sliding_speed", "v", "m/s", "sliding speed"),
+    Quantity("sphere_radius", "R", "m", "radius of the sphere"),
+    Quantity("viscosity", "η", "Pa s", "dynamic viscosity"),
+    _closed("shear_rate", "γ̇", "1/s", "shear rate"),
+    _closed("speed_viscosity_product", "ηv", "N/m", "viscosity times sliding speed"),
+    Quantity("velocity_shift_factor", "a", "1", "theory is evaluated at a·ηv"),
+    # water
+    Quantity("surface_tension", "γ_w", "N/m", "surface tension of the liquid"),
+    _closed("contact_angle_skin", "θ1", "rad", "contact angle of the liquid on skin", pi),
+    _closed("contact_angle_counterface", "θ2", "rad", "contact angle of the liquid on the counterface", pi),
+    _closed("film_thickness", "d_film", "m", "average thickness of the water film"),
+    _closed("evaporation_rate", "ḋ", "m/s", "thickness evaporated per time"),
+    _closed("relative_humidity", "RH", "1", "relative humidity", 1.0),
+    Quantity("temperature", "T", "K", "temperature"),
+    _closed("time", "t", "s", "time"),
+    # people
+    _closed("skin_hydration", "hydration", "1", "corneometer reading, arbitrary units"),
+    # noise and discrepancy
+    Quantity("noise_scale", "σ_noise", "1", "scale of the scatter about the forward model"),
+    Quantity("degrees_of_freedom", "ν_t", "1", "degrees of freedom of Student's t"),
+    Quantity("discrepancy_factor", "δ", "1", "factor by which truth exceeds the forward model"),
+)
+
+QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
+"""Every known quantity by name."""
+
+LABELS: dict[str, str] = {
+    "person": "who was measured",
+    "liquid": "the lubricant",
+    "state": "state of the skin, such as dry or wet",
+    "body_site": "where on the body",
+    "counterface": "what slid against the skin",
+    "source": "key of the source the row was read in",
+    "row_label": "a name for the row",
+}
+"""Text columns of data sets (grouping columns) and their meaning."""
+
+STANDARD_DEVIATION_SUFFIX = "_standard_deviation"
+"""A column ``<quantity>_standard_deviation`` holds the spread of that quantity, in its unit."""
+
+
+def lookup(name: str) -> Quantity | None:
+    """The quantity called ``name``; spread columns are recognised by their suffix; None if unknown."""
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    if name.endswith(STANDARD_DEVIATION_SUFFIX):
+        base = QUANTITIES.get(name.removesuffix(STANDARD_DEVIATION_SUFFIX))
+        if base is not None:
+            return Quantity(name, f"sd({base.symbol})", base.unit, f"spread of {base.name}")
+    return None
+
+
+def suggestions(name: str, known: list[str]) -> str:
+    """A sentence naming close matches of ``name``, or an empty string: ``" Did you mean 'rms_height'?"``."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, known, n=2, cutoff=0.6)
+    return f" Did you mean {' or '.join(repr(match) for match in close)}?" if close else ""
