@@ -1,0 +1,1 @@
+"""Forward models: named inputs (parameters and conditions alike) in, named observables out."""
