@@ -1,0 +1,221 @@
+"""Two types that must not be confused: densities of parameters, and likelihoods of data given parameters.
+
+A density has mass, so a change of coordinates multiplies it by the Jacobian; a likelihood is a plain function
+of the parameters, so a change of coordinates leaves it as it is. A posterior is a prior (density) times a
+likelihood; the product of two densities has no meaning here and is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.statistics.priors import Prior
+from skinbayes.statistics.transforms import VectorTransform
+
+BatchFunction = Callable[[FloatArray], FloatArray]
+"""``(B, D)`` to ``(B,)``."""
+
+
+@dataclass(frozen=True)
+class _WithJacobian:
+    function: BatchFunction
+    transform: VectorTransform
+
+    def __call__(self, z: FloatArray) -> FloatArray:
+        with np.errstate(all="ignore"):
+            value = self.function(self.transform.inverse(z))
+            # where the density is zero the Jacobian may be infinite: 0 · ∞ is 0 here
+            return np.where(value > -inf, value + self.transform.log_jacobian(z), -inf)
+
+
+@dataclass(frozen=True)
+class _WithoutJacobian:
+    function: BatchFunction
+    transform: VectorTransform
+
+    def __call__(self, z: FloatArray) -> FloatArray:
+        return self.function(self.transform.inverse(z))
+
+
+@dataclass(frozen=True)
+class _Product:
+    prior: BatchFunction
+    likelihood: BatchFunction
+
+    def __call__(self, theta: FloatArray) -> FloatArray:
+        value = np.array(self.prior(theta), dtype=float)
+        possible = value > -inf  # the likelihood is never asked about parameters that the prior excludes
+        if possible.all():
+            return value + self.likelihood(theta)
+        if possible.any():
+            value[possible] += self.likelihood(theta[possible])
+        return value
+
+
+@dataclass(frozen=True)
+class _Sum:
+    first: BatchFunction
+    second: BatchFunction
+
+    def __call__(self, theta: FloatArray) -> FloatArray:
+        return self.first(theta) + self.second(theta)
+
+
+@dataclass(frozen=True)
+class _Independent:
+    priors: tuple[Prior, ...]
+
+    def __call__(self, theta: FloatArray) -> FloatArray:
+        total = np.zeros(theta.shape[0])
+        for column, prior in enumerate(self.priors):
+            total += prior.log_density(theta[:, column])
+        return total
+
+
+@dataclass(frozen=True)
+class LogLikelihood:
+    """ln p(data | θ) as a function of a batch of parameters. Picklable if ``function`` is.
+
+    Attributes
+    ----------
+    function : ``(B, D)`` to ``(B,)``; −inf where the data are impossible
+    """
+
+    function: BatchFunction
+
+    def __call__(self, theta: FloatArray) -> FloatArray:
+        """Log-likelihood of each row of ``theta``, shape ``(B,)``."""
+        return self.function(theta)
+
+    def transformed(self, transform: VectorTransform) -> LogLikelihood:
+        """The same likelihood as a function of unconstrained coordinates: no Jacobian."""
+        return LogLikelihood(_WithoutJacobian(self.function, transform))
+
+    def times(self, other: LogLikelihood) -> LogLikelihood:
+        """Likelihood of two independent sets of data together."""
+        if not isinstance(other, LogLikelihood):
+            raise TypeError(
+                "A likelihood is multiplied by a likelihood; write prior.times(likelihood) for a posterior."
+            )
+        return LogLikelihood(_Sum(self.function, other.function))
+
+
+@dataclass(frozen=True)
+class LogDensity:
+    """ln of a (possibly unnormalised) density of a batch of parameters. Picklable if ``function`` is.
+
+    Attributes
+    ----------
+    function : ``(B, D)`` to ``(B,)``; −inf where the density is zero, never NaN
+
+    Examples
+    --------
+    >>> from skinbayes.statistics.priors import make_prior
+    >>> prior = LogDensity.independent([make_prior("exponential", [1.0])])
+    >>> z = VectorTransform.for_supports([(0.0, float("inf"))])
+    >>> point = np.array([[0.0]])
+    >>> print(prior(np.exp(point)), prior.transformed(z)(point + 1.0))
+    [-1.] [-1.71828183]
+    """
+
+    function: BatchFunction
+
+    @staticmethod
+    def independent(priors: list[Prior] | tuple[Prior, ...]) -> LogDensity:
+        """The joint density of D independent priors, normalised."""
+        return LogDensity(_Independent(tuple(priors)))
+
+    def __call__(self, theta: FloatArray) -> FloatArray:
+        """Log-density of each row of ``theta``, shape ``(B,)``."""
+        return self.function(theta)
+
+    def transformed(self, transform: VectorTransform) -> LogDensity:
+        """The density of the unconstrained coordinates: ln p(x(z)) + ln |dx/dz|."""
+        return LogDensity(_WithJacobian(self.function, transform))
+
+    def times(self, likelihood: LogLikelihood) -> LogDensity:
+        """Prior times likelihood: the unnormalised posterior density, in the same coordinates.
+
+        Raises
+        ------
+        TypeError
+            if ``likelihood`` is a density: the Jacobian would be counted twice
+        """
+        if not isinstance(likelihood, LogLikelihood):
+            raise TypeError("A density can only be multiplied by a likelihood, not by another density.")
+        return LogDensity(_Product(self.function, likelihood.function))
+
+
+@dataclass
+class ImpossibleValues:
+    """How often a function gave something that is not a log-density, and where first. Mutable, picklable.
+
+    A copy that was sent to another process counts for itself; add it back with :meth:`merge`.
+
+    Attributes
+    ----------
+    counts : cause (``"NaN"`` or ``"+inf"``) to the number of parameter vectors
+    first : cause to the first offending parameter vector, shape ``(D,)``, as a tuple
+    """
+
+    counts: dict[str, int] = field(default_factory=dict)
+    first: dict[str, tuple[float, ...]] = field(default_factory=dict)
+
+    def record(self, cause: str, points: FloatArray) -> None:
+        """Count the rows of ``points`` (shape ``(n, D)``) under ``cause``; the very first one is kept."""
+        if len(points):
+            self.counts[cause] = self.counts.get(cause, 0) + len(points)
+            self.first.setdefault(cause, tuple(float(value) for value in points[0]))
+
+    def merge(self, other: ImpossibleValues) -> None:
+        """Add the counts of ``other``."""
+        for cause, count in other.counts.items():
+            self.counts[cause] = self.counts.get(cause, 0) + count
+            self.first.setdefault(cause, other.first[cause])
+
+    @property
+    def total(self) -> int:
+        """Number of offending parameter vectors of any cause."""
+        return sum(self.counts.values())
+
+    def sentences(self, names: tuple[str, ...]) -> list[str]:
+        """One sentence per cause, with the first offending point by parameter name."""
+        lines = []
+        for cause, count in self.counts.items():
+            where = ", ".join(
+                f"{name} = {value:g}" for name, value in zip(names, self.first[cause], strict=True)
+            )
+            times = "once" if count == 1 else f"{count} times"
+            lines.append(
+                f"The log-likelihood was {cause} {times} and was taken as impossible; first at {where}."
+            )
+        return lines
+
+
+@dataclass(frozen=True)
+class GuardedLikelihood:
+    """A log-likelihood whose NaN and +inf become −inf, counted in ``impossible``.
+
+    Attributes
+    ----------
+    function : ``(B, D)`` to ``(B,)``
+    impossible : the counter that is written to
+    """
+
+    function: BatchFunction
+    impossible: ImpossibleValues
+
+    def __call__(self, theta: FloatArray) -> FloatArray:
+        """``function(theta)`` with impossible values replaced by −inf, shape ``(B,)``."""
+        value = np.asarray(self.function(theta), dtype=float)
+        good = value < inf  # False for NaN and +inf
+        if good.all():
+            return value
+        self.impossible.record("NaN", theta[np.isnan(value)])
+        self.impossible.record("+inf", theta[value == inf])
+        return np.where(good, value, -inf)
