@@ -1,0 +1,112 @@
+"""One ensemble, some steps further: a function of its state alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.sampling.moves import MoveFactory
+from skinbayes.sampling.target import Target
+
+
+@dataclass(frozen=True)
+class EnsembleState:
+    """Everything the future of an ensemble depends on.
+
+    Attributes
+    ----------
+    positions : walkers, shape ``(walkers, D)``
+    log_density : at those positions, shape ``(walkers,)``
+    random_state : state of its own ``numpy.random.RandomState`` (Mersenne Twister)
+    """
+
+    positions: FloatArray
+    log_density: FloatArray
+    random_state: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Block:
+    """Consecutive steps of one ensemble.
+
+    Attributes
+    ----------
+    positions : shape ``(steps, walkers, D)``
+    log_density : shape ``(steps, walkers)``
+    random_state : generator state after the last step
+    evaluations : log-densities computed
+    invalid : how many of them were NaN or +inf and were taken as −inf
+    """
+
+    positions: FloatArray
+    log_density: FloatArray
+    random_state: tuple[Any, ...]
+    evaluations: int
+    invalid: int
+
+    @property
+    def end(self) -> EnsembleState:
+        """The state after the last step."""
+        return EnsembleState(self.positions[-1], self.log_density[-1], self.random_state)
+
+
+class Density:
+    """The target's log-density, row by row or batched, with NaN and +inf counted and taken as −inf."""
+
+    def __init__(self, target: Target, vectorize: bool) -> None:
+        self._target = target
+        self._vectorize = vectorize
+        self.evaluations = 0
+        self.invalid = 0
+
+    def __call__(self, position: FloatArray) -> FloatArray:
+        """Log-density of each row of ``position`` (shape ``(B, D)``), shape ``(B,)``."""
+        if self._vectorize:
+            value = np.array(self._target.log_density(position), dtype=float)
+        else:
+            rows = [self._target.log_density(position[row : row + 1]) for row in range(len(position))]
+            value = np.concatenate([np.asarray(row, dtype=float) for row in rows])
+        invalid = np.isnan(value) | (value == np.inf)
+        value[invalid] = -np.inf
+        self.evaluations += len(position)
+        self.invalid += int(np.count_nonzero(invalid))
+        return value
+
+
+def advance(target: Target, state: EnsembleState, steps: int, vectorize: bool, moves: MoveFactory) -> Block:
+    """Move an ensemble by ``steps`` steps.
+
+    The result depends on the arguments only, so it does not matter in which process, after which interruption or
+    in how many pieces the steps are made.
+
+    Parameters
+    ----------
+    target : the density
+    state : where the ensemble stands
+    steps : how many steps, at least 1
+    vectorize : one call of the density for half the ensemble, or one for each walker
+    moves : builds the proposals
+
+    Returns
+    -------
+    the steps made, the first being the one after ``state``
+    """
+    import emcee
+
+    walkers, dimension = state.positions.shape
+    density = Density(target, vectorize)
+    sampler = emcee.EnsembleSampler(walkers, dimension, density, moves=moves())
+    # emcee's own wrapper prints to standard output when a call is interrupted, raises on NaN and accepts +inf.
+    sampler.compute_log_prob = lambda position: (density(position), None)
+    # emcee ignores a random state it does not understand, in silence: a RandomState tuple is what works.
+    current = emcee.State(state.positions, state.log_density, random_state=state.random_state, copy=True)
+    positions = np.empty((steps, walkers, dimension))
+    log_density = np.empty((steps, walkers))
+    made = sampler.sample(current, iterations=steps, store=False, skip_initial_state_check=True)
+    for step, current in enumerate(made):
+        positions[step] = current.coords
+        log_density[step] = current.log_prob
+    return Block(positions, log_density, sampler.random_state, density.evaluations, density.invalid)

@@ -1,0 +1,193 @@
+"""When a run has been long enough: one rule, judged on what has been sampled and on nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import ceil
+
+import numpy as np
+from scipy.special import ndtri
+
+from skinbayes.arrays import FloatArray
+from skinbayes.sampling.convergence import autocorrelation_time, r_hat, rank_normalise, rank_r_hat
+from skinbayes.sampling.options import SamplerOptions
+
+WALKER_R_HAT = 1.05
+"""Largest acceptable R-hat between single walkers."""
+
+TAU_CHANGE = 0.25
+"""Largest acceptable growth of an autocorrelation time when correlations are summed to half of the kept steps."""
+
+JUDGED_STEPS = 256
+"""Longer chains are thinned to between half of this and this many steps before they are judged."""
+
+TAIL_SCORE = float(ndtri(0.05))
+"""Normal score of the 5 % quantile."""
+
+FIRST_CHECK = 200
+CHECK_GROWTH = 1.3
+
+
+@dataclass(frozen=True)
+class StoppingReport:
+    """Every number the stopping rule looks at, and its verdict.
+
+    Arrays have one value for each coordinate.
+
+    Attributes
+    ----------
+    names : coordinates
+    steps, burn_in : steps of each ensemble, and how many of the first are discarded
+    tau : integrated autocorrelation time of the ranks, in steps
+    tau_change : relative change of tau when correlations are summed to half of the kept steps
+    ess_bulk, ess_tail : effective sample size of the ranks, and the smaller one of the 5 % and 95 % quantiles
+    r_hat : rank-normalised split R-hat, the chains being ensembles
+    walker_r_hat : rank-normalised R-hat, the chains being walkers
+    stuck_walkers : walkers that never moved after burn-in
+    missing : sentences, one for each condition that is not met
+    """
+
+    names: tuple[str, ...]
+    steps: int
+    burn_in: int
+    tau: FloatArray
+    tau_change: FloatArray
+    ess_bulk: FloatArray
+    ess_tail: FloatArray
+    r_hat: FloatArray
+    walker_r_hat: FloatArray
+    stuck_walkers: int
+    missing: tuple[str, ...]
+
+    @property
+    def converged(self) -> bool:
+        """Whether nothing is missing."""
+        return not self.missing
+
+    def sentence(self) -> str:
+        """The verdict in words."""
+        if self.converged:
+            return (
+                f"Converged after {self.steps} steps: effective sample size at least {self.ess_bulk.min():.0f}, "
+                f"R-hat at most {self.r_hat.max():.3f}."
+            )
+        return f"Not converged after {self.steps} steps: " + "; ".join(self.missing) + "."
+
+
+def is_check(steps: int, block_steps: int) -> bool:
+    """Whether the rule is applied after ``steps`` steps: at 200 and then each time the run is 30 % longer.
+
+    The sequence is rounded up to whole blocks and depends on the number of steps alone, so that an interrupted run
+    stops where an uninterrupted one does.
+    """
+    check = FIRST_CHECK
+    while True:
+        rounded = ceil(check / block_steps) * block_steps
+        if rounded >= steps:
+            return rounded == steps
+        check = ceil(check * CHECK_GROWTH)
+
+
+def judge(positions: FloatArray, names: tuple[str, ...], options: SamplerOptions) -> StoppingReport:
+    """Apply the stopping rule.
+
+    Parameters
+    ----------
+    positions : all steps so far, shape ``(ensembles, steps, walkers, D)``
+    names : the D coordinates
+    options : what is asked for
+
+    Returns
+    -------
+    all numbers and the verdict
+    """
+    steps = positions.shape[1]
+    burn_in = _burn_in(positions)
+    kept = positions[:, burn_in:]
+    stride = max(1, ceil(kept.shape[1] / JUDGED_STEPS))
+    judged = kept[:, ::-1][:, ::stride][:, ::-1]
+    numbers = np.array([_numbers(judged[..., index]) for index in range(len(names))])
+    tau, tau_far, tail_tau, r_hat_ensembles, r_hat_walkers = numbers.T
+    draws = kept.shape[0] * kept.shape[1] * kept.shape[2]
+    report = StoppingReport(
+        names=names,
+        steps=steps,
+        burn_in=burn_in,
+        tau=tau * stride,
+        tau_change=np.where(np.isfinite(tau), tau_far / np.where(np.isfinite(tau), tau, 1.0) - 1.0, np.inf),
+        ess_bulk=np.nan_to_num(draws / (tau * stride)),
+        ess_tail=np.nan_to_num(draws / (tail_tau * stride)),
+        r_hat=r_hat_ensembles,
+        walker_r_hat=r_hat_walkers,
+        stuck_walkers=int(np.count_nonzero(~np.any(kept[:, 1:] != kept[:, :-1], axis=(1, 3)))),
+        missing=(),
+    )
+    return replace(report, missing=tuple(_missing(report, kept.shape[0], options)))
+
+
+def _burn_in(positions: FloatArray) -> int:
+    """Steps to discard: ten autocorrelation times of the second half or a fifth, but never more than half."""
+    ensembles, steps, walkers, dimension = positions.shape
+    half = steps // 2
+    stride = max(1, ceil(half / JUDGED_STEPS))
+    late = positions[:, half::stride].transpose(3, 0, 2, 1).reshape(dimension, ensembles * walkers, -1)
+    tau = stride * max(autocorrelation_time(rank_normalise(series))[0] for series in late)
+    return half if not 10 * tau < half else max(ceil(10 * tau), ceil(steps / 5))
+
+
+def _numbers(values: FloatArray) -> tuple[float, float, float, float, float]:
+    """Autocorrelation times (near, far, tails) and R-hat (ensembles, walkers) of one coordinate, shape (E, S, W)."""
+    ensembles, steps, walkers = values.shape
+    scores = rank_normalise(values)
+    series = np.ascontiguousarray(scores.transpose(0, 2, 1)).reshape(ensembles * walkers, steps)
+    tau, tau_far = autocorrelation_time(series)
+    tails = [(series <= TAIL_SCORE).astype(float), (series >= -TAIL_SCORE).astype(float)]
+    tail_tau = max(autocorrelation_time(tail)[0] for tail in tails)
+    return tau, tau_far, tail_tau, rank_r_hat(values.reshape(ensembles, -1)), r_hat(series)
+
+
+def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) -> Iterator[str]:
+    kept = report.steps - report.burn_in
+    if kept < 4:
+        yield "too few steps to judge"
+    # Comparisons are written so that nan counts as not met.
+    worst = int(np.argmax(np.nan_to_num(report.tau, nan=np.inf)))
+    name = report.names[worst]
+    if not np.isfinite(report.tau[worst]):
+        yield (
+            f"the autocorrelation of {name} has not died out within the {kept} kept steps, "
+            "so its autocorrelation time is unknown"
+        )
+    elif not kept * ensembles >= options.steps_over_tau * report.tau[worst]:
+        yield (
+            f"{kept * ensembles} kept steps in {ensembles} ensembles are {kept * ensembles / report.tau[worst]:.0f} "
+            f"autocorrelation times of {name} ({report.tau[worst]:.1f} steps), {options.steps_over_tau:g} are asked for"
+        )
+    worst = int(np.argmax(np.nan_to_num(report.tau_change, nan=np.inf)))
+    if np.isfinite(report.tau[worst]) and not report.tau_change[worst] <= TAU_CHANGE:
+        yield (
+            f"the autocorrelation time of {report.names[worst]} is not stable: {report.tau_change[worst]:+.0%} with "
+            "longer lags"
+        )
+    for what, sizes in (("", report.ess_bulk),):
+        worst = int(np.argmin(sizes))
+        if not sizes[worst] >= options.ess:
+            yield (
+                f"the effective sample size {what}of {report.names[worst]} is {sizes[worst]:.0f}, "
+                f"{options.ess:.0f} is asked for"
+            )
+    worst = int(np.argmax(np.nan_to_num(report.r_hat, nan=np.inf)))
+    if not report.r_hat[worst] <= options.r_hat:
+        yield (
+            f"the ensembles disagree about {report.names[worst]}: R-hat {report.r_hat[worst]:.3f}, "
+            f"at most {options.r_hat:g} is accepted"
+        )
+    worst = int(np.argmax(np.nan_to_num(report.walker_r_hat, nan=np.inf)))
+    if not report.walker_r_hat[worst] <= WALKER_R_HAT:
+        yield (
+            f"single walkers disagree about {report.names[worst]}: R-hat {report.walker_r_hat[worst]:.3f}, "
+            f"at most {WALKER_R_HAT:g} is accepted"
+        )
+    if report.stuck_walkers:
+        yield f"{report.stuck_walkers} walkers never moved"
