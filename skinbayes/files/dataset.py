@@ -1,0 +1,235 @@
+"""Data sets: a CSV with units in its header, and where it comes from."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Literal
+
+import numpy as np
+
+from skinbayes import vocabulary
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+from skinbayes.files.columns import LabelArray, read_columns
+from skinbayes.files.locate import shipped_folder, shipped_names
+from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
+from skinbayes.files.table import quoted, read_table
+
+DATA_FILE = "data.csv"
+PROVENANCE_FILE = "provenance.toml"
+
+
+@dataclass(frozen=True, eq=False)
+class Dataset:
+    """Columns of measurements in SI, immutable and picklable.
+
+    Attributes
+    ----------
+    key : name of the data set (of the file, for a CSV of a user's own)
+    path : the CSV
+    columns : name to array of shape (n_rows,), read-only; numbers in SI, or text for label columns
+    units : SI unit of each numeric column
+    n_rows : number of rows
+    provenance : where the numbers come from, or None for a bare CSV
+    sha256 : of the bytes of the CSV
+    kind : ``"measurements"``
+    selection : the labels that were selected, by column; empty for all rows
+    """
+
+    key: str
+    path: Path
+    columns: Mapping[str, FloatArray | LabelArray]
+    units: Mapping[str, str]
+    provenance: Provenance | None
+    sha256: str
+    kind: Literal["measurements"] = "measurements"
+    selection: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        frozen: dict[str, FloatArray | LabelArray] = {}
+        for name, values in self.columns.items():
+            copy = values.copy()
+            copy.setflags(write=False)
+            frozen[name] = copy
+        object.__setattr__(self, "columns", MappingProxyType(frozen))
+        object.__setattr__(self, "units", MappingProxyType(dict(self.units)))
+        object.__setattr__(self, "selection", MappingProxyType(dict(self.selection)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # a mapping proxy cannot be pickled, and arrays forget that they are read-only
+        fields = (self.key, self.path, dict(self.columns), dict(self.units), self.provenance, self.sha256)
+        return Dataset, (*fields, self.kind, dict(self.selection))
+
+    @property
+    def n_rows(self) -> int:
+        """Number of rows."""
+        return len(next(iter(self.columns.values())))
+
+    @property
+    def fingerprint(self) -> str:
+        """sha256 of the names, units and values of all columns: the same numbers, wherever they were read."""
+        digest = hashlib.sha256()
+        for name in sorted(self.columns):
+            values = self.columns[name]
+            content = "\n".join(values.tolist()).encode() if values.dtype.kind == "U" else values.tobytes()
+            digest.update(f"{name}\n{self.units.get(name, '')}\n{len(content)}\n".encode() + content)
+        return digest.hexdigest()
+
+    def labels(self, column: str) -> tuple[str, ...]:
+        """Different labels of a column, in order of appearance.
+
+        Raises
+        ------
+        InputError
+            if there is no such label column
+        """
+        return tuple(dict.fromkeys(self._label_column(column).tolist()))
+
+    def select(self, rows: Mapping[str, Sequence[str]]) -> Dataset:
+        """The rows whose labels are among those given.
+
+        Parameters
+        ----------
+        rows : label column to the labels that stay, such as ``{"liquid": ["water"]}``
+
+        Returns
+        -------
+        Dataset
+            the same columns with fewer rows, in the same order
+
+        Raises
+        ------
+        InputError
+            for an unknown column or label, or if no row remains
+
+        Examples
+        --------
+        >>> load_dataset("fehlberg2025-finger-stribeck").select({"liquid": ["water"]}).n_rows
+        11
+        """
+        keep = np.ones(self.n_rows, dtype=bool)
+        for column, wanted in rows.items():
+            present = self.labels(column)
+            chosen = [wanted] if isinstance(wanted, str) else list(wanted)
+            for label in chosen:
+                if label not in present:
+                    raise InputError(
+                        f"data set '{self.key}', column '{column}': no row is labelled {quoted(str(label))}; "
+                        f"expected one of {_listed(present)}.{_suggestions(label, present)}"
+                    )
+            keep &= np.isin(self._label_column(column), chosen)
+        if not keep.any():
+            raise InputError(f"data set '{self.key}': no row has {_wish(rows)}; expected at least one row")
+        columns = {name: values[keep] for name, values in self.columns.items()}
+        chosen_labels = {
+            column: (labels,) if isinstance(labels, str) else tuple(labels) for column, labels in rows.items()
+        }
+        selection = {**self.selection, **chosen_labels}
+        return Dataset(
+            self.key, self.path, columns, self.units, self.provenance, self.sha256, self.kind, selection
+        )
+
+    def _label_column(self, column: str) -> LabelArray:
+        available = [name for name in self.columns if name not in self.units]
+        if column not in available:
+            has = _listed(available) if available else "none"
+            raise InputError(
+                f"data set '{self.key}': no label column {quoted(str(column))}; label columns are: {has}."
+                f"{_suggestions(column, available)}"
+            )
+        values: Any = self.columns[column]
+        return values
+
+
+def _listed(names: Sequence[str], at_most: int = 20) -> str:
+    shown = ", ".join(repr(name) for name in names[:at_most])
+    return shown + (f" and {len(names) - at_most} more" if len(names) > at_most else "")
+
+
+def _suggestions(name: object, known: Sequence[str]) -> str:
+    return vocabulary.suggestions(str(name)[:80], list(known))
+
+
+def _wish(rows: Mapping[str, Sequence[str]]) -> str:
+    return " and ".join(f"{column} in {list(labels)!r:.80}" for column, labels in rows.items()) or "any label"
+
+
+def load_dataset(name_or_path: str | Path, *, relative_to: Path | None = None) -> Dataset:
+    """Read a data set and check every cell.
+
+    Parameters
+    ----------
+    name_or_path : name of a shipped data set, path of a CSV, or of a folder with ``data.csv`` and
+        ``provenance.toml``. A shipped name wins; write ``./name`` for a folder of the same name
+    relative_to : folder that relative paths start from (that of a model file); the current one by default
+
+    Returns
+    -------
+    Dataset
+        columns in SI
+
+    Raises
+    ------
+    InputError
+        naming file, line, column, what was found and what was expected; or if the numbers are a reference
+        table, which cannot be fitted
+
+    Examples
+    --------
+    >>> data = load_dataset("adams2007-forearm-glass")
+    >>> data.labels("state"), data.columns["friction_coefficient"].tolist(), data.units["normal_force"]
+    (('dry', 'wet'), [0.3, 1.4], 'N')
+    """
+    key, path, described_in = find_dataset(name_or_path, relative_to=relative_to)
+    provenance = None
+    if described_in is not None:
+        provenance = load_provenance(described_in)
+        if provenance.kind == "reference":
+            raise InputError(
+                f"data set '{key}' is a reference table: published values for choosing priors and checking "
+                "results, not measurements of one experiment, so it cannot be fitted. "
+                f"'skinbayes show {key}' prints it"
+            )
+    table = read_table(path)
+    if provenance is not None and described_in is not None:
+        check_sha256(provenance, path, table.sha256, described_in)
+    columns, units = read_columns(table)
+    return Dataset(key, path, columns, units, provenance, table.sha256)
+
+
+def find_dataset(
+    name_or_path: str | Path, *, relative_to: Path | None = None
+) -> tuple[str, Path, Path | None]:
+    """Key, CSV and provenance file (None for a bare CSV) of a data set.
+
+    Raises
+    ------
+    InputError
+        if there is neither a shipped data set of this name nor such a file or folder
+    """
+    shipped = shipped_names("datasets")
+    if isinstance(name_or_path, str) and name_or_path in shipped:
+        folder = shipped_folder("datasets") / name_or_path
+        return name_or_path, folder / DATA_FILE, folder / PROVENANCE_FILE
+    if str(name_or_path).strip() == "" or "\0" in str(name_or_path):
+        raise InputError(f"data set {str(name_or_path)!r}: expected a name or the path of a CSV file")
+    path = Path(name_or_path).expanduser()
+    if relative_to is not None:
+        path = relative_to / path
+    try:
+        is_folder, is_file = path.is_dir(), path.is_file()
+    except OSError:
+        is_folder = is_file = False
+    if is_folder:
+        described_in = path / PROVENANCE_FILE
+        return path.resolve().name, path / DATA_FILE, described_in if described_in.is_file() else None
+    if is_file:
+        return path.stem, path, None
+    raise InputError(
+        f"data set {quoted(str(name_or_path))}: neither a shipped data set nor an existing file; shipped are "
+        f"{', '.join(shipped)}.{_suggestions(name_or_path, shipped)}"
+    )
