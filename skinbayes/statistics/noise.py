@@ -17,7 +17,7 @@ student_t      t about f              as gaussian
 log_student_t  ln y t about ln f      as lognormal
 ============== ====================== ==============================================
 
-For Student's t, w is the scale, not the standard deviation, and the known spread is widened by the same tails.
+For Student's t, w is the scale, not the standard deviation; the known spread is widened by the same tails.
 In the logarithmic families spread/y is a property of the datum as it was reported: it does not change when
 another value of y is drawn.
 """
@@ -87,7 +87,8 @@ class NoiseFamily:
         Parameters
         ----------
         predicted : prediction f, shape ``(B, N)``, unit of the observable
-        scale : fitted scatter, broadcasts to ``(B, N)``; dimensionless if ``relative``, else in the observable's unit
+        scale : fitted scatter, broadcasts to ``(B, N)``; dimensionless if ``relative``, else unit of the
+            observable
         spread : known standard deviations, shape ``(N,)`` or 0, unit of the observable
         discrepancy : independent relative model error, broadcasts to ``(B, N)``, dimensionless
         observed : data that ``spread`` belongs to, shape ``(N,)``, unit of the observable; used by the

@@ -1,0 +1,137 @@
+"""Densities take a Jacobian, likelihoods do not; products by type; impossible values counted."""
+
+import pickle
+from math import inf, nan
+
+import numpy as np
+import pytest
+from scipy import integrate, stats
+
+from skinbayes.statistics.densities import GuardedLikelihood, ImpossibleValues, LogDensity, LogLikelihood
+from skinbayes.statistics.priors import make_prior
+from skinbayes.statistics.transforms import VectorTransform
+
+PRIORS = (make_prior("lognormal", [2.0, 0.5]), make_prior("uniform", [0.0, 3.0]))
+TO_LINE = VectorTransform.for_supports([prior.support for prior in PRIORS])
+
+
+def poisson(theta):
+    """Four counts with mean a·b."""
+    mean = theta[:, :1] * theta[:, 1:]
+    return stats.poisson.logpmf(np.array([2, 3, 5, 1]), mean).sum(axis=1)
+
+
+def strange(theta):
+    x = theta[:, 0]
+    return np.where(x > 2, nan, np.where(x > 1, inf, np.where(x < -1, -inf, -x * x)))
+
+
+def refuse(theta):
+    assert (theta[:, 1] <= 3.0).all(), "the likelihood was asked about an excluded parameter"
+    return -theta[:, 0]
+
+
+def test_density_in_new_coordinates_keeps_its_mass():
+    posterior = LogDensity.independent(PRIORS).times(LogLikelihood(poisson))
+    natural, _ = integrate.dblquad(
+        lambda b, a: float(np.exp(posterior(np.array([[a, b]]))[0])), 1e-3, 30.0, 0.0, 3.0, epsrel=1e-6
+    )
+    on_line = posterior.transformed(TO_LINE)
+    z = np.linspace(-12.0, 12.0, 241)
+    grid = np.stack(np.meshgrid(z, z, indexing="ij"), axis=-1).reshape(-1, 2)
+    # trapezoidal rule: converges exponentially for a smooth density that vanishes at both ends
+    mass = np.exp(on_line(grid)).sum() * (z[1] - z[0]) ** 2
+    assert mass == pytest.approx(natural, rel=1e-4)
+
+
+def test_likelihood_keeps_its_values():
+    likelihood = LogLikelihood(poisson)
+    z = np.random.default_rng(1).normal(size=(20, 2))
+    np.testing.assert_array_equal(likelihood.transformed(TO_LINE)(z), likelihood(TO_LINE.inverse(z)))
+    prior = LogDensity.independent(PRIORS)
+    difference = prior.transformed(TO_LINE)(z) - prior(TO_LINE.inverse(z))
+    np.testing.assert_allclose(difference, TO_LINE.log_jacobian(z), rtol=1e-12)
+
+
+def test_transform_commutes_with_product():
+    prior, likelihood = LogDensity.independent(PRIORS), LogLikelihood(poisson)
+    z = np.random.default_rng(2).normal(size=(20, 2))
+    after = prior.times(likelihood).transformed(TO_LINE)(z)
+    before = prior.transformed(TO_LINE).times(likelihood.transformed(TO_LINE))(z)
+    np.testing.assert_allclose(after, before, rtol=1e-12)
+
+
+def test_two_densities_are_not_multiplied():
+    prior = LogDensity.independent(PRIORS)
+    with pytest.raises(TypeError, match="not by another density"):
+        prior.times(prior)
+    with pytest.raises(TypeError, match="likelihood is multiplied by a likelihood"):
+        LogLikelihood(poisson).times(prior)
+    with pytest.raises(TypeError):
+        prior * prior
+
+
+def test_two_data_sets_together():
+    both = LogLikelihood(poisson).times(LogLikelihood(refuse))
+    theta = np.array([[1.0, 2.0], [2.0, 0.5]])
+    np.testing.assert_allclose(both(theta), poisson(theta) + refuse(theta))
+
+
+def test_likelihood_is_not_asked_where_the_prior_is_zero():
+    posterior = LogDensity.independent(PRIORS).times(LogLikelihood(refuse))
+    theta = np.array([[1.0, 4.0], [1.0, 2.0], [-1.0, 3.5], [nan, 5.0]])
+    values = posterior(theta)
+    assert values[[0, 2, 3]].tolist() == [-inf] * 3
+    assert values[1] == LogDensity.independent(PRIORS)(theta[1:2])[0] - 1.0
+    assert posterior(theta[[0]]).tolist() == [-inf]
+
+
+def test_far_out_on_the_line_is_impossible_not_nan():
+    posterior = LogDensity.independent(PRIORS).transformed(TO_LINE)
+    values = posterior(np.array([[1e5, 0.0], [-1e5, 0.0], [inf, 0.0], [nan, 0.0], [0.0, 1e5]]))
+    assert not np.isnan(values).any()
+    assert values[:4].tolist() == [-inf] * 4
+
+
+def test_guard_counts_by_cause_and_keeps_the_first_point():
+    counter = ImpossibleValues()
+    guarded = LogLikelihood(GuardedLikelihood(strange, counter))
+    theta = np.array([[0.5, 7.0], [3.0, 8.0], [1.5, 9.0], [4.0, 1.0], [-2.0, 1.0]])
+    assert guarded(theta).tolist() == [-0.25, -inf, -inf, -inf, -inf]
+    assert counter.counts == {"NaN": 2, "+inf": 1}
+    assert counter.first == {"NaN": (3.0, 8.0), "+inf": (1.5, 9.0)}
+    guarded(theta[1:2])
+    assert counter.total == 4
+    first, second = counter.sentences(("modulus", "height"))
+    assert "NaN 3 times" in first
+    assert "modulus = 3, height = 8" in first
+    assert "+inf once" in second
+
+
+def test_clean_values_are_not_counted():
+    counter = ImpossibleValues()
+    theta = np.zeros((3, 2))
+    assert GuardedLikelihood(strange, counter)(theta).tolist() == [0.0, 0.0, 0.0]
+    assert counter.total == 0
+    assert counter.sentences(("a", "b")) == []
+
+
+def test_counters_merge():
+    one = ImpossibleValues({"NaN": 1}, {"NaN": (1.0,)})
+    one.merge(ImpossibleValues({"NaN": 2, "+inf": 3}, {"NaN": (2.0,), "+inf": (4.0,)}))
+    assert one.counts == {"NaN": 3, "+inf": 3}
+    assert one.first == {"NaN": (1.0,), "+inf": (4.0,)}
+
+
+def test_a_posterior_travels_to_another_process():
+    counter = ImpossibleValues()
+    posterior = LogDensity.independent(PRIORS).times(LogLikelihood(GuardedLikelihood(poisson, counter)))
+    posterior = posterior.transformed(TO_LINE)
+    z = np.random.default_rng(4).normal(size=(5, 2))
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(posterior))(z), posterior(z))
+
+
+def test_batch_and_rows_agree_to_the_last_bit():
+    prior = LogDensity.independent(PRIORS).transformed(TO_LINE)
+    z = np.random.default_rng(5).normal(size=(33, 2))
+    assert prior(z).tolist() == [float(prior(row[None])[0]) for row in z]
