@@ -3,5 +3,14 @@
 from skinbayes.files.dataset import Dataset, load_dataset
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.provenance import Provenance
+from skinbayes.files.reference import ReferenceTable, load_reference
 
-__all__ = ["Dataset", "Provenance", "load_dataset", "shipped_folder", "shipped_names"]
+__all__ = [
+    "Dataset",
+    "Provenance",
+    "ReferenceTable",
+    "load_dataset",
+    "load_reference",
+    "shipped_folder",
+    "shipped_names",
+]

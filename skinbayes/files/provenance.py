@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from skinbayes.errors import InputError
-
-_LARGEST_FILE = 1_000_000  # bytes
+from skinbayes.files.toml_text import line_of, read_toml
 
 Text = Annotated[str, Field(min_length=1)]
 Doi = Annotated[str, Field(pattern=r"^10\.[0-9]{4,9}/[^\s\"<>]+$")]
@@ -70,20 +68,7 @@ def load_provenance(path: Path) -> Provenance:
     InputError
         if the file is unreadable, is not TOML, or a key is missing, unknown or of the wrong type
     """
-    try:
-        raw = path.read_bytes()[: _LARGEST_FILE + 1]
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.strerror or error}); expected a provenance file"
-        ) from error
-    if len(raw) > _LARGEST_FILE:
-        raise InputError(f"{path}: larger than {_LARGEST_FILE} bytes; expected a short TOML file")
-    try:
-        content = tomllib.loads(raw.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8; expected a TOML file in UTF-8") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"{path}: not valid TOML ({error})") from None
+    content, text = read_toml(path)
     try:
         return Provenance.model_validate(content)
     except ValidationError as error:
@@ -91,7 +76,9 @@ def load_provenance(path: Path) -> Provenance:
         key = ".".join(str(part) for part in first["loc"])
         found = "" if first["type"] == "missing" else f"; found {first['input']!r:.60}"
         more = f" (and {others} more problem{'s' if others > 1 else ''})" if others else ""
-        raise InputError(f"{path}, key '{key}': {first['msg'].lower()}{found}{more}") from None
+        line = line_of(text, [str(part) for part in first["loc"] if isinstance(part, str)][:1])
+        at = "" if line is None or first["type"] == "missing" else f", line {line}"
+        raise InputError(f"{path}{at}, key '{key}': {first['msg'].lower()}{found}{more}") from None
 
 
 def check_sha256(provenance: Provenance, data: Path, sha256: str, described_in: Path) -> None:

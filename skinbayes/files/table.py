@@ -14,8 +14,8 @@ from pathlib import Path
 from skinbayes.errors import InputError
 
 MAX_ROWS = 100_000
-"""Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: 64 vectors
-of 8 bytes at this many rows are already 50 MB for each intermediate array."""
+"""Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: with 64
+vectors every intermediate array of this many rows already takes 50 MB."""
 
 _LONGEST_LINE = 100_000  # bytes; a table of quantities has lines of some hundred
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
