@@ -1,0 +1,103 @@
+"""A measured roughness power spectrum from a CSV of the user's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+from skinbayes.files.columns import read_quantity
+from skinbayes.files.table import Problems, Table, quoted, read_table
+from skinbayes.roughness import TabulatedSpectrum
+from skinbayes.units import describe_unit, split_header
+from skinbayes.vocabulary import Quantity, suggestions
+
+_WAVEVECTOR = Quantity("wavevector", "q", "1/m", "roughness wavevector, 2π over the wavelength")
+_POWER = {
+    "power_spectrum_2d": Quantity(
+        "power_spectrum_2d", "C", "m^4", "isotropic two-dimensional power spectrum"
+    ),
+    "power_spectrum_1d": Quantity("power_spectrum_1d", "C1", "m^3", "power spectrum of line profiles"),
+}
+_EXPECTED = (
+    "expected the columns 'wavevector [1/m]' and 'power_spectrum_2d [m^4]' or 'power_spectrum_1d [m^3]'"
+)
+
+
+def read_spectrum(path: str | Path) -> TabulatedSpectrum:
+    """Read a tabulated roughness power spectrum.
+
+    The CSV has a column ``wavevector`` (``[1/m]`` or a unit that converts to it, 2π over the wavelength) and
+    either ``power_spectrum_2d [m^4]``, in the convention of the paper (Eq. 1), whose mean square height is
+    ``2π ∫ q C(q) dq``, or ``power_spectrum_1d [m^3]`` of line profiles, which is converted. The name of the
+    column decides: a number cannot tell which of the two it is.
+
+    Parameters
+    ----------
+    path : the CSV
+
+    Returns
+    -------
+    TabulatedSpectrum
+        two-dimensional spectrum in SI
+
+    Raises
+    ------
+    InputError
+        naming line and column, for a missing or unknown column, a unit of another dimension, cells that are
+        not positive finite numbers, wavevectors that do not increase, or fewer than two rows
+    """
+    path = Path(path)
+    table = read_table(path)
+    named = _columns(table)
+    problems = Problems(path)
+    position, unit = named["wavevector"]
+    wavevector = read_quantity(table, position, _WAVEVECTOR, unit, problems)
+    power_name = next(name for name in _POWER if name in named)
+    power_position, power_unit = named[power_name]
+    power = read_quantity(table, power_position, _POWER[power_name], power_unit, problems)
+    _check_increasing(table, position, wavevector, unit, problems)
+    problems.raise_if_any()
+    if len(wavevector) < 2:
+        raise InputError(
+            f"{path}, line {table.lines[0]}: a single row; expected a spectrum of at least two rows"
+        )
+    if power_name == "power_spectrum_1d":
+        return TabulatedSpectrum.from_profile(wavevector, power)
+    return TabulatedSpectrum(wavevector, power)
+
+
+def _columns(table: Table) -> dict[str, tuple[int, str]]:
+    """Position and unit of each column; InputError for anything but one wavevector and one spectrum."""
+    where = f"{table.path}, line {table.header_line}"
+    named: dict[str, tuple[int, str]] = {}
+    for position, header in enumerate(table.header):
+        name, unit = split_header(header)
+        if name != "wavevector" and name not in _POWER:
+            guess = suggestions(name[:80], ["wavevector", *_POWER])
+            raise InputError(
+                f"{where}: unknown column {quoted(header.strip())}; {_EXPECTED}.{guess}".rstrip(".")
+            )
+        if name in named:
+            raise InputError(f"{where}: column '{name}' appears twice; {_EXPECTED}")
+        if not unit:
+            si = "1/m" if name == "wavevector" else _POWER[name].unit
+            raise InputError(f"{where}: column '{name}' has no unit; expected {describe_unit(si)}")
+        named[name] = position, unit
+    if "wavevector" not in named or len(named) != 2:
+        raise InputError(f"{where}: found the columns {', '.join(named)}; {_EXPECTED}")
+    return named
+
+
+def _check_increasing(table: Table, position: int, values: FloatArray, unit: str, problems: Problems) -> None:
+    cells = table.column(position)
+    for row in np.flatnonzero(~(np.diff(values) > 0)).tolist():
+        if np.isfinite(values[row]) and np.isfinite(values[row + 1]):
+            problems.add(
+                table.lines[row + 1],
+                position,
+                f", column 'wavevector': found {cells[row + 1][:30]} {unit} after {cells[row][:30]} {unit}; "
+                "expected wavevectors that increase from row to row",
+            )
