@@ -71,10 +71,14 @@ _ALL = (
     Quantity("poisson_ratio_layer", "ν0", "1", "Poisson ratio of the stratum corneum", -1.0, 0.5),
     Quantity("poisson_ratio_bulk", "ν1", "1", "Poisson ratio of the tissue below", -1.0, 0.5),
     Quantity("layer_thickness", "d", "m", "thickness of the stratum corneum"),
-    Quantity("yield_stress", "σ_Y", "Pa", "penetration hardness; inf is purely elastic", infinite_allowed=True),
+    Quantity(
+        "yield_stress", "σ_Y", "Pa", "penetration hardness; inf is purely elastic", infinite_allowed=True
+    ),
     # roughness
     Quantity("rms_height", "h_rms", "m", "root-mean-square roughness"),
-    Quantity("hurst_exponent", "H", "1", "Hurst exponent; fractal dimension 3 − H", 0.0, 1.0, upper_open=True),
+    Quantity(
+        "hurst_exponent", "H", "1", "Hurst exponent; fractal dimension 3 − H", 0.0, 1.0, upper_open=True
+    ),
     Quantity("wavevector_min", "q0", "1/m", "smallest roughness wavevector"),
     Quantity("wavevector_rolloff", "q_r", "1/m", "end of the plateau of the power spectrum"),
     Quantity("wavevector_max", "q1", "1/m", "largest roughness wavevector"),
@@ -90,8 +94,15 @@ _ALL = (
     _closed("plastic_share", "A_pl/A", "1", "share of the contact area that has yielded", 1.0),
     Quantity("surface_response", "S", "1", "layered response factor: S(0) = E0*/E1*, S(∞) = 1"),
     Quantity("effective_modulus", "E_eff", "Pa", "plane-strain modulus felt by one wavevector, E0*/S"),
-    Quantity("area_correction", "γ", "1", "Yang–Persson correction; none (= 1) is plain Persson", 0.0, 1.0,
-             none_means=1.0),
+    Quantity(
+        "area_correction",
+        "γ",
+        "1",
+        "Yang–Persson correction; none (= 1) is plain Persson",
+        0.0,
+        1.0,
+        none_means=1.0,
+    ),
     _closed("mean_separation", "ū", "m", "mean interfacial separation"),
     # friction experiment
     _closed("friction_coefficient", "μ", "1", "friction force over normal force"),
@@ -116,7 +127,15 @@ _ALL = (
     # noise and discrepancy
     Quantity("noise_scale", "σ_noise", "1", "scale of the scatter about the forward model"),
     Quantity("degrees_of_freedom", "ν_t", "1", "degrees of freedom of Student's t"),
-    Quantity("discrepancy_factor", "δ", "1", "factor by which truth exceeds the forward model"),
+    Quantity(
+        "discrepancy_factor",
+        "δ",
+        "1",
+        "factor by which truth exceeds the forward model, the same in all rows",
+    ),
+    Quantity(
+        "discrepancy_scale", "σ_δ", "1", "scatter of the truth about the forward model, relative, row by row"
+    ),
 )
 
 QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}

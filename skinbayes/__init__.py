@@ -1,0 +1,50 @@
+"""Bayesian inference of skin mechanics from friction data.
+
+Physics (Persson contact mechanics of layered, rough, elastoplastic skin) becomes a likelihood; emcee samples it; the
+answer is a posterior, a model comparison and a page that says what was learnt and what was not.
+
+>>> import skinbayes as sb
+>>> problem = sb.load_problem("forearm-glass")
+>>> problem.names[0]
+'frictional_shear_stress'
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+__all__ = ["Dataset", "Fit", "InputError", "Problem", "__version__", "compare", "load_dataset", "load_fit", "load_problem",
+           "sample"]  # fmt: skip
+
+if TYPE_CHECKING:
+    from skinbayes.compare import compare
+    from skinbayes.errors import InputError
+    from skinbayes.files.dataset import Dataset, load_dataset
+    from skinbayes.fit import Fit, load_fit, sample
+    from skinbayes.problem import Problem, load_problem
+
+_HOME = {
+    "Dataset": "skinbayes.files.dataset",
+    "Fit": "skinbayes.fit",
+    "InputError": "skinbayes.errors",
+    "Problem": "skinbayes.problem",
+    "compare": "skinbayes.compare",
+    "load_dataset": "skinbayes.files.dataset",
+    "load_fit": "skinbayes.fit",
+    "load_problem": "skinbayes.problem",
+    "sample": "skinbayes.fit",
+}
+
+
+def __getattr__(name: str) -> Any:
+    # names are imported when first used, so that `import skinbayes` and `skinbayes --help` stay quick
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'skinbayes' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,5 @@
+"""The command line."""
+
+from skinbayes.cli.main import main
+
+__all__ = ["main"]

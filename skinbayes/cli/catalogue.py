@@ -1,0 +1,150 @@
+"""``models``, ``datasets`` and ``show``: what is shipped, and one thing in full."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+from skinbayes.errors import InputError
+
+if TYPE_CHECKING:
+    from skinbayes.files.provenance import Provenance
+    from skinbayes.files.table import Table
+
+
+@click.command()
+@json_option
+def models(as_json: bool) -> None:
+    """List the shipped models, one line each."""
+    from skinbayes.files.locate import shipped_names
+    from skinbayes.files.modelfile import load_model
+
+    specs = [load_model(name) for name in shipped_names("models")]
+    if as_json:
+        print_json(
+            {
+                "models": [
+                    {"name": s.name, "title": s.title, "forward": s.forward, "dataset": s.dataset}
+                    for s in specs
+                ]
+            }
+        )
+        return
+    print_table(
+        ("model", "title", "data set"), [(s.name, s.title, s.dataset or "none: predict only") for s in specs]
+    )
+
+
+@click.command()
+@json_option
+def datasets(as_json: bool) -> None:
+    """List the shipped data sets, one line each."""
+    from skinbayes.files.locate import shipped_names
+
+    found = [(name, *_read(name)) for name in shipped_names("datasets")]
+    if as_json:
+        print_json({"datasets": [
+            {"name": name, "title": p.title, "kind": p.kind, "rows": len(table.rows), "doi": p.doi, "licence": p.licence}
+            for name, p, table in found if p
+        ]})  # fmt: skip
+        return
+    rows = [(name, p.kind, str(len(table.rows)), p.title) for name, p, table in found if p]
+    print_table(("data set", "kind", "rows", "title"), rows, right=(2,))
+
+
+@click.command()
+@click.argument("name")
+@json_option
+def show(name: str, as_json: bool) -> None:
+    """Show a model or a data set: text, parameters with priors and sources, provenance."""
+    from skinbayes.files.locate import shipped_names
+
+    is_model = name in shipped_names("models") or name.endswith(".toml")
+    is_data = name in shipped_names("datasets") or name.endswith(".csv")
+    if not is_model and not is_data:
+        from skinbayes.vocabulary import suggestions
+
+        known = [*shipped_names("models"), *shipped_names("datasets")]
+        raise InputError(
+            f"no model or data set '{name}'.{suggestions(name, known)} See 'skinbayes models' and 'skinbayes datasets'"
+        )
+    (_show_model if is_model else _show_dataset)(name, as_json)
+
+
+def _show_model(name: str, as_json: bool) -> None:
+    from skinbayes.problem import load_problem
+    from skinbayes.units import format_quantity
+
+    problem = load_problem(name)
+    spec = problem.spec
+    parameters: list[dict[str, Any]] = []
+    for parameter in (*problem.free, *problem.fixed):
+        parameters.append(
+            {
+                "name": parameter.label,
+                "unit": parameter.unit,
+                "prior": parameter.prior_text if parameter.prior else None,
+                "fixed": parameter.value,
+                "source": parameter.source,
+            }
+        )
+    if as_json:
+        print_json({
+            "model": spec.name, "title": spec.title, "description": spec.description, "forward": spec.forward,
+            "dataset": spec.dataset, "rows": spec.rows, "observable": spec.observable, "noise": spec.noise,
+            "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
+        })  # fmt: skip
+        return
+    click.echo(f"{spec.title}\n\n{spec.description}\n")
+    click.echo(f"forward model: {spec.forward} – {problem.forward.summary}")
+    click.echo(
+        f"data set:      {spec.dataset or 'none (predict only)'}"
+        + (f", rows {spec.rows}" if spec.rows else "")
+    )
+    if spec.noise:
+        click.echo(f"noise:         {spec.noise}")
+    rows = []
+    for p in problem.free:
+        rows.append((p.label, p.prior_text, p.source))
+    for p in problem.fixed:
+        value = "inf" if p.value == float("inf") else format_quantity(float(p.value or 0.0), p.unit or "1")
+        rows.append((p.label, f"= {value}", p.source))
+    print_table(("parameter", "prior or value", "source"), rows)
+
+
+def _show_dataset(name: str, as_json: bool) -> None:
+    provenance, table = _read(name)
+    headers, rows = table.header, table.rows
+    if as_json:
+        print_json(
+            {
+                "dataset": name,
+                "provenance": provenance and provenance.model_dump(),
+                "columns": headers,
+                "rows": rows,
+            }
+        )
+        return
+    if provenance is not None:
+        click.echo(f"{provenance.title}\n{', '.join(provenance.authors)}\n")
+        for label in ("doi", "licence", "attribution", "where", "how_read", "transformation", "spread"):
+            value = getattr(provenance, label)
+            if value:
+                click.echo(
+                    f"{label.replace('_', ' ') + ':':16}{', '.join(value) if isinstance(value, list) else value}"
+                )
+        if provenance.caveats:
+            click.echo("")
+            print_sentences(provenance.caveats, "Caveats")
+    print_table(headers, rows)
+
+
+def _read(name: str) -> tuple[Provenance | None, Table]:
+    from skinbayes.files.dataset import find_dataset
+    from skinbayes.files.provenance import load_provenance
+    from skinbayes.files.table import read_table
+
+    _, path, described_in = find_dataset(name)
+    return (None if described_in is None else load_provenance(described_in)), read_table(path)

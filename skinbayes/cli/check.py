@@ -1,0 +1,24 @@
+"""``check``: what can be said before sampling."""
+
+from __future__ import annotations
+
+import click
+
+from skinbayes.cli.output import json_option, print_json, print_sentences
+
+
+@click.command()
+@click.argument("model")
+@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
+@json_option
+def check(model: str, data: str | None, as_json: bool) -> None:
+    """Check a model before sampling: units, priors, and which data identify which parameters, in words."""
+    from skinbayes.problem import load_problem
+
+    result = load_problem(model, data=data).check()
+    if as_json:
+        print_json(result.to_dict())
+        return
+    for title, sentences in result.sections():
+        print_sentences(sentences, title)
+        click.echo("")

@@ -1,0 +1,136 @@
+"""``fit``: sample the posterior."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from skinbayes.cli.output import (
+    EXIT_DONE,
+    EXIT_INTERRUPTED,
+    EXIT_NOT_CONVERGED,
+    json_option,
+    print_json,
+    print_sentences,
+    print_table,
+)
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+
+
+@click.command()
+@click.argument("model")
+@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
+@click.option(
+    "--seed", default=1, show_default=True, type=click.IntRange(0), help="The same seed gives the same draws."
+)
+@click.option(
+    "--ess",
+    default=2000,
+    show_default=True,
+    type=click.IntRange(10),
+    help="Effective sample size wanted in every parameter.",
+)
+@click.option(
+    "--cores",
+    default=1,
+    show_default=True,
+    type=click.IntRange(1),
+    help="Worker processes; they do not change the draws.",
+)
+@click.option(
+    "--max-steps",
+    default=10_000,
+    show_default=True,
+    type=click.IntRange(100),
+    help="Stop here, converged or not.",
+)
+@click.option("-o", "--output", metavar="DIR", help="Run directory.  [default: runs/MODEL-seedN]")
+@click.option("--resume", is_flag=True, help="Continue the run in the run directory.")
+@click.option(
+    "--report", "with_report", is_flag=True, help="Also write the report page into the run directory."
+)
+@json_option
+def fit(
+    model: str,
+    data: str | None,
+    seed: int,
+    ess: int,
+    cores: int,
+    max_steps: int,
+    output: str | None,
+    resume: bool,
+    with_report: bool,
+    as_json: bool,
+) -> int:
+    """Sample the posterior until autocorrelation, effective sample size and R-hat agree that it is enough."""
+    from skinbayes.cli.progress import sampling_progress
+    from skinbayes.fit import sample
+    from skinbayes.problem import load_problem
+
+    problem = load_problem(model, data=data)
+    directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
+    try:
+        with sampling_progress(ess) as progress:
+            result = sample(
+                problem, seed=seed, ess=ess, cores=cores, directory=directory, resume=resume, progress=progress,
+                max_steps=max_steps,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        click.echo(
+            f"interrupted; the steps so far are in {directory}. Repeat the command with --resume to continue.",
+            err=True,
+        )
+        return EXIT_INTERRUPTED
+    page = None
+    if with_report:
+        from skinbayes.report import write_report
+
+        page = write_report(result, directory / "report.html")
+    status = EXIT_DONE if result.converged else EXIT_NOT_CONVERGED
+    if as_json:
+        print_json(_document(result, directory, page))
+        return status
+    _print(result, directory, page)
+    return status
+
+
+def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]:
+    sampling = result.provenance["sampling"]
+    summary = result.summary()
+    columns = ["unit", "median", "q05", "q95", "ess_bulk", "ess_tail", "r_hat"]
+    return {
+        "run": str(directory),
+        "model": result.name,
+        "converged": result.converged,
+        "verdict": sampling["verdict"],
+        "seed": sampling["seed"],
+        "parameters": summary[columns].to_dict(orient="index"),
+        "log_evidence": None,
+        "log_likelihood_evaluations": sampling["evaluations"],
+        "steps": sampling["steps"],
+        "seconds": result.provenance["seconds"]["total"],
+        "report": page and str(page),
+    }
+
+
+def _print(result: Fit, directory: Path, page: Path | None) -> None:
+    from skinbayes.units import format_quantity
+
+    title = result.provenance["title"] + ("" if result.converged else "   – NOT CONVERGED")
+    free = result.summary()
+    rows = []
+    for label, row in result.summary(derived=True).iterrows():
+        values = [format_quantity(row[key], row["unit"]) for key in ("median", "q05", "q95")]
+        convergence = [f"{row['ess_bulk']:.0f}", f"{row['r_hat']:.3f}"] if label in free.index else ["", ""]
+        rows.append([str(label), *values, *convergence])
+    print_table(
+        ("parameter", "median", "5 %", "95 %", "ESS", "R-hat"), rows, title=title, right=(1, 2, 3, 4, 5)
+    )
+    print_sentences([result.provenance["sampling"]["verdict"]])
+    click.echo(
+        f"run: {directory}" + (f"\nreport: {page}" if page else f"\nreport: skinbayes report {directory}")
+    )

@@ -1,0 +1,68 @@
+"""The ``skinbayes`` command: subcommands, and what happens when something goes wrong."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import click
+
+from skinbayes import __version__
+from skinbayes.cli.catalogue import datasets, models, show
+from skinbayes.cli.check import check
+from skinbayes.cli.compare import compare
+from skinbayes.cli.fit import fit
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED
+from skinbayes.cli.predict import predict
+from skinbayes.cli.prior import prior
+from skinbayes.cli.report import report
+from skinbayes.errors import InputError
+
+
+class _InOrder(click.Group):
+    """Lists the subcommands in the order in which one uses them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)
+
+
+@click.group(cls=_InOrder, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name="skinbayes")
+def cli() -> None:
+    """What friction data say about skin, and how sure that is.
+
+    MODEL is the name of a shipped model (see 'skinbayes models') or the path of a model file (TOML).
+    RUN is a directory that 'skinbayes fit' wrote.
+
+    Every command takes --json: one JSON document on standard output, SI values.
+    Exit status: 0 done, 2 bad input, 3 finished without converging, 130 interrupted.
+    """
+
+
+for _command in (models, datasets, show, check, prior, predict, fit, compare, report):
+    cli.add_command(_command)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; exits with the documented status."""
+    try:
+        status = cli.main(
+            args=None if arguments is None else list(arguments), prog_name="skinbayes", standalone_mode=False
+        )
+    except InputError as error:
+        click.echo(f"skinbayes: {error}", err=True)
+        status = EXIT_BAD_INPUT
+    except click.UsageError as error:
+        error.show()
+        status = EXIT_BAD_INPUT
+    except click.ClickException as error:
+        error.show()
+        status = EXIT_BAD_INPUT
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("skinbayes: interrupted", err=True)
+        status = EXIT_INTERRUPTED
+    except BrokenPipeError:
+        # the reader of a pipe went away ('skinbayes show ... | head')
+        sys.stderr.close()
+        status = 0
+    sys.exit(status if isinstance(status, int) else 0)

@@ -1,0 +1,44 @@
+"""``prior``: what the priors alone predict, beside the data."""
+
+from __future__ import annotations
+
+import click
+
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+
+
+@click.command()
+@click.argument("model")
+@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
+@click.option("--seed", default=1, show_default=True, type=click.IntRange(0), help="Seed of the draws.")
+@click.option(
+    "--draws",
+    default=4000,
+    show_default=True,
+    type=click.IntRange(100, 1_000_000),
+    help="Number of prior draws.",
+)
+@json_option
+def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) -> None:
+    """Compare the prior predictive distribution with the data, row by row."""
+    from skinbayes.problem import load_problem
+    from skinbayes.problem.prior_predictive import prior_predictive
+    from skinbayes.units import format_quantity
+    from skinbayes.vocabulary import QUANTITIES
+
+    result = prior_predictive(load_problem(model, data=data), seed=seed, draws=draws)
+    if as_json:
+        print_json(result.to_dict())
+        return
+    unit = QUANTITIES[result.observable].unit
+    rows = [
+        (
+            row.label,
+            *(format_quantity(v, unit) for v in (row.observed, row.q05, row.median, row.q95)),
+            f"{100 * row.share_below:.0f} %",
+        )
+        for row in result.rows
+    ]
+    print_table(("row", "observed", "prior 5 %", "prior median", "prior 95 %", "draws below"), rows, right=(1, 2, 3, 4, 5),
+                title=result.observable)  # fmt: skip
+    print_sentences(result.sentences())

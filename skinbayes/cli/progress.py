@@ -1,0 +1,68 @@
+"""The progress of a run on standard error: a bar on a terminal, a line now and then elsewhere."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import click
+import numpy as np
+
+from skinbayes.cli.output import console
+
+if TYPE_CHECKING:
+    from skinbayes.sampling import Progress
+
+QUIET_SECONDS = 15.0
+"""Without a terminal one line is written each time this much time has passed."""
+
+
+@contextmanager
+def sampling_progress(ess: float) -> Iterator[Callable[[Progress], None]]:
+    """Yield what to call after every block of steps; shows steps and effective sample size reached of ``ess``."""
+    terminal = console(stderr=True)
+    if not terminal.is_terminal:
+        yield _lines(ess)
+        return
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    bar = Bar(
+        TextColumn("sampling"),
+        BarColumn(),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+        console=terminal,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("starting", total=ess)
+
+        def update(progress: Progress) -> None:
+            reached = _reached(progress)
+            text = f"{progress.steps} steps" + (
+                "" if reached is None else f", effective sample size {reached:.0f} of {ess:.0f}"
+            )
+            bar.update(task, completed=min(reached or 0.0, ess), description=text)
+
+        yield update
+
+
+def _lines(ess: float) -> Callable[[Progress], None]:
+    last = time.monotonic()
+
+    def update(progress: Progress) -> None:
+        nonlocal last
+        if time.monotonic() - last >= QUIET_SECONDS:
+            last = time.monotonic()
+            reached = _reached(progress)
+            size = "" if reached is None else f", effective sample size {reached:.0f} of {ess:.0f}"
+            click.echo(f"sampling: {progress.steps} steps{size}", err=True)
+
+    return update
+
+
+def _reached(progress: Progress) -> float | None:
+    return None if progress.report is None else float(np.min(progress.report.ess_bulk))

@@ -1,0 +1,101 @@
+"""The grammar of a model file, as data types that refuse what they do not know."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class DataBlock(_Strict):
+    """``[data]``: which rows of which data set, and what of it the model explains."""
+
+    dataset: str | None = None
+    file: str | None = None
+    observable: str
+    rows: dict[str, list[str]] = Field(default_factory=dict)
+    spread: Literal["use", "ignore"] | None = None
+
+    @model_validator(mode="after")
+    def _one_source(self) -> DataBlock:
+        if (self.dataset is None) == (self.file is None):
+            raise ValueError("give either 'dataset' (a shipped data set) or 'file' (the path of a CSV)")
+        return self
+
+
+class SurfaceBlock(_Strict):
+    """``[surface]``: a named surface, or the user's own tabulated power spectrum."""
+
+    name: str | None = None
+    file: str | None = None
+
+    @model_validator(mode="after")
+    def _one_source(self) -> SurfaceBlock:
+        if (self.name is None) == (self.file is None):
+            raise ValueError("give either 'name' (a named surface) or 'file' (the path of a spectrum CSV)")
+        return self
+
+
+class DerivedBlock(_Strict):
+    """``[derived.NAME]``: a product of powers of parameters and intermediate quantities."""
+
+    product: dict[str, float]
+    meaning: str = ""
+    symbol: str = ""
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> DerivedBlock:
+        if not self.product:
+            raise ValueError("'product' names no factor")
+        return self
+
+
+class GridBlock(_Strict):
+    """``[conditions]`` entry: a list of values, or a grid between two values."""
+
+    values: list[str | float | int] | None = None
+    logspace: list[str | float | int] | None = None
+    linspace: list[str | float | int] | None = None
+    points: int | None = Field(default=None, ge=2, le=10_000)
+
+    @model_validator(mode="after")
+    def _one_form(self) -> GridBlock:
+        given = [form for form in (self.values, self.logspace, self.linspace) if form is not None]
+        if len(given) != 1:
+            raise ValueError("give exactly one of 'values', 'logspace' or 'linspace'")
+        if self.values is None:
+            if self.points is None:
+                raise ValueError("a 'logspace' or 'linspace' needs 'points'")
+            if len(given[0]) != 2:
+                raise ValueError("a 'logspace' or 'linspace' needs two values: [first, last]")
+        elif not self.values:
+            raise ValueError("'values' is empty")
+        return self
+
+
+class ModelBlock(_Strict):
+    """A whole model file."""
+
+    format: Literal[1] = 1
+    title: str
+    description: str = ""
+    forward: str
+    data: DataBlock | None = None
+    surface: SurfaceBlock | None = None
+    parameters: dict[str, Any]
+    noise: dict[str, Any] | None = None
+    derived: dict[str, DerivedBlock] = Field(default_factory=dict)
+    conditions: dict[str, GridBlock] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _data_need_noise(self) -> ModelBlock:
+        if (self.data is None) != (self.noise is None):
+            missing = "[noise]" if self.noise is None else "[data]"
+            raise ValueError(
+                f"{missing} is missing: a model of data needs both [data] and [noise], a model without data neither"
+            )
+        return self

@@ -1,0 +1,147 @@
+"""One parameter of a model file: a fixed value or a prior, as a person writes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from skinbayes.errors import InputError
+from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
+from skinbayes.units import parse_quantity
+from skinbayes.vocabulary import Quantity, suggestions
+
+
+@dataclass(frozen=True)
+class ParameterSpec:
+    """A parameter of a model.
+
+    Attributes
+    ----------
+    name : name in the vocabulary
+    unit : SI unit
+    by, level : grouping column and its level, if the parameter has one value for each level; otherwise None
+    value : SI value of a fixed parameter, else None
+    prior : prior of a free parameter in SI, else None
+    prior_text : the prior as it was written
+    source : where value or prior come from, in a sentence
+    """
+
+    name: str
+    unit: str
+    by: str | None
+    level: str | None
+    value: float | None
+    prior: Prior | None
+    prior_text: str
+    source: str
+
+    @property
+    def label(self) -> str:
+        """``name`` or ``name[level]``."""
+        return self.name if self.level is None else f"{self.name}[{self.level}]"
+
+
+def parse_parameter(
+    quantity: Quantity,
+    entry: Any,
+    where: str,
+    unit: str | None = None,
+    by: str | None = None,
+    level: str | None = None,
+) -> ParameterSpec:
+    """Turn ``{ lognormal = ["15 MPa", 0.5], source = "…" }`` or ``{ fixed = "20 um" }`` into a parameter.
+
+    Parameters
+    ----------
+    quantity : what the parameter is; gives unit and physical range
+    entry : the TOML value: a table, or a bare value, which is fixed
+    where : file and key, for messages
+    unit : SI unit if other than the quantity's (noise in the unit of the observable)
+
+    Raises
+    ------
+    InputError
+        Unknown family or key, wrong number or unit of arguments, value outside the physical range, or a prior with no
+        probability inside that range.
+    """
+    unit = unit or quantity.unit
+    if isinstance(entry, (str, int, float)) and not isinstance(entry, bool):
+        entry = {"fixed": entry}
+    if not isinstance(entry, dict):
+        raise InputError(
+            f"{where}: found {entry!r}; expected a value with unit or a table such as {_example(unit)}"
+        )
+    source = entry.get("source", "")
+    if not isinstance(source, str):
+        raise InputError(f"{where}.source: found {source!r}; expected a sentence in quotes")
+    keys = [key for key in entry if key != "source"]
+    unknown = [key for key in keys if key != "fixed" and key not in FAMILIES]
+    if unknown:
+        known = ["fixed", *FAMILIES]
+        raise InputError(
+            f"{where}: unknown key '{unknown[0]}'.{suggestions(unknown[0], known)} "
+            f"Expected one of {', '.join(known)}, and 'source'"
+        )
+    if len(keys) != 1:
+        raise InputError(
+            f"{where}: found {len(keys)} priors or values ({', '.join(keys) or 'none'}); expected exactly one"
+        )
+    key = keys[0]
+    if key == "fixed":
+        value = parse_value(quantity, entry["fixed"], where, unit)
+        return ParameterSpec(
+            quantity.name, unit, by, level, value, None, f"fixed at {_as_written(entry[key])}", source
+        )
+    prior = _parse_prior(quantity, key, entry[key], f"{where}.{key}", unit)
+    return ParameterSpec(
+        quantity.name, unit, by, level, None, prior, f"{key}({_as_written(entry[key])})", source
+    )
+
+
+def parse_value(quantity: Quantity, raw: Any, where: str, unit: str | None = None) -> float:
+    """Read one value of ``quantity``: text with unit, a bare number if dimensionless, or ``none`` where it has a meaning.
+
+    Raises :class:`InputError` for a missing or wrong unit and for a value outside the physical range.
+    """
+    unit = unit or quantity.unit
+    if quantity.none_means is not None and isinstance(raw, str) and raw.strip().lower() == "none":
+        return quantity.none_means
+    value = parse_quantity(raw, unit, where=where)
+    if not quantity.admits(value):
+        raise InputError(
+            f"{where}: found {_as_written(raw)}; expected a {quantity.name} {quantity.range_text()}"
+        )
+    return value
+
+
+def _parse_prior(quantity: Quantity, family: str, raw: Any, where: str, unit: str) -> Prior:
+    arguments = raw if isinstance(raw, list) else [raw]
+    expected = FAMILIES[family].arguments
+    if len(arguments) != len(expected):
+        raise InputError(
+            f"{where}: found {len(arguments)} arguments; expected {len(expected)}: "
+            f"[{', '.join(argument.name for argument in expected)}]"
+        )
+    numbers = [
+        parse_quantity(given, unit if argument.kind == "value" else "1", where=f"{where} ({argument.name})")
+        for given, argument in zip(arguments, expected, strict=True)
+    ]
+    try:
+        prior = make_prior(family, numbers)
+        low, high = prior.support
+        if low < quantity.lower or high > quantity.upper:
+            prior = prior.truncated(quantity.lower, quantity.upper)
+    except InputError as error:
+        raise InputError(f"{where}: {error} ({quantity.name} must be {quantity.range_text()})") from None
+    return prior
+
+
+def _as_written(raw: Any) -> str:
+    return ", ".join(str(item) for item in raw) if isinstance(raw, list) else str(raw)
+
+
+def _example(unit: str) -> str:
+    text = {"Pa": '"15 MPa"', "m": '"20 um"', "1": "0.4", "N": '"0.5 N"', "1/m": '"1e3 1/m"'}.get(
+        unit, f'"1 {unit}"'
+    )
+    return f'{{ lognormal = [{text}, 0.5], source = "…" }} or {{ fixed = {text} }}'

@@ -1,0 +1,97 @@
+"""Reading TOML with errors that name the file and the line."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from skinbayes.errors import InputError
+
+LARGEST_FILE = 1_000_000
+"""Bytes; a model file or a provenance file is a page or two of text."""
+
+
+def read_text(path: Path) -> str:
+    """Return the text of ``path``; :class:`InputError` if it is missing, empty, too large, binary or not UTF-8."""
+    try:
+        data = path.read_bytes()
+    except IsADirectoryError:
+        raise InputError(f"{path}: this is a folder; a TOML file was expected") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    if not data.strip():
+        raise InputError(
+            f"{path}: the file is empty; a TOML file with a title and a forward model was expected"
+        )
+    if len(data) > LARGEST_FILE:
+        raise InputError(
+            f"{path}: {len(data):,} bytes; a TOML file of at most {LARGEST_FILE:,} bytes was expected"
+        )
+    if b"\0" in data:
+        raise InputError(f"{path}: binary data at byte {data.index(0)}; a UTF-8 text file was expected")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise InputError(f"{path}, line {line}: byte 0x{data[error.start]:02x} is not UTF-8 text") from None
+
+
+def read_toml(path: Path) -> tuple[dict[str, Any], str]:
+    """Return the parsed content of a TOML file and its text.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is not valid TOML (a key given twice, a missing quote); names the line.
+    """
+    text = read_text(path)
+    try:
+        return tomllib.loads(text.replace("\r\n", "\n")), text
+    except tomllib.TOMLDecodeError as error:
+        message = str(error)
+        found = re.search(r"\(at line (\d+), column (\d+)\)", message)
+        reason = re.sub(r"\s*\(at .*\)", "", message)
+        if "overwrite" in reason or "declare" in reason:
+            reason += " – a key or table stands here a second time"
+        at = f", line {found[1]}, column {found[2]}" if found else ""
+        raise InputError(f"{path}{at}: not valid TOML: {reason}") from None
+    except RecursionError:
+        raise InputError(f"{path}: nested too deeply to be a model file") from None
+
+
+def line_of(text: str, keys: Sequence[str]) -> int | None:
+    """Line (from 1) on which the key path ``keys`` is set, or the deepest part of it that can be found.
+
+    A plain search, good enough for messages: table headers first, then ``key =`` inside the table.
+
+    >>> line_of("title = 'x'\\n[parameters]\\nyield_stress = 3\\n", ["parameters", "yield_stress"])
+    3
+    """
+    lines = text.splitlines()
+    best: int | None = None
+    start = 0
+    depth = 0
+    for count in range(len(keys), 0, -1):
+        header = re.compile(r"^\s*\[+\s*" + r"\s*\.\s*".join(_quoted(key) for key in keys[:count]) + r"\s*\]")
+        position = next((i for i, line in enumerate(lines) if header.match(line)), None)
+        if position is not None:
+            best, start, depth = position + 1, position + 1, count
+            break
+    for key in keys[depth:]:
+        pattern = re.compile(r"(^|[{,.\s])" + _quoted(key) + r"\s*[=.]")
+        for i in range(max(start - 1, 0), len(lines)):
+            if i >= start and re.match(r"^\s*\[", lines[i]) and depth:
+                break
+            if pattern.search(lines[i]) and not lines[i].lstrip().startswith("#"):
+                best, start = i + 1, i + 1
+                break
+        else:
+            break
+    return best
+
+
+def _quoted(key: str) -> str:
+    return "[\"']?" + re.escape(key) + "[\"']?"

@@ -1,0 +1,58 @@
+"""The one place that knows which ArviZ is installed: below 1 (InferenceData) or from 1 on (DataTree)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def arviz() -> Any:
+    """Import ArviZ (seconds; so only where it is needed) without its notice about the coming version."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FutureWarning)
+        import arviz as az
+    return az
+
+
+def to_arviz(groups: Mapping[str, xarray.Dataset]) -> Any:
+    """Return the groups as ``InferenceData`` (ArviZ below 1) or ``xarray.DataTree`` (from 1 on)."""
+    az = arviz()
+    if hasattr(az, "InferenceData"):
+        return az.InferenceData(**dict(groups))
+    import xarray
+
+    return xarray.DataTree.from_dict(dict(groups))
+
+
+def loo(groups: Mapping[str, xarray.Dataset]) -> dict[str, Any]:
+    """Pareto-smoothed importance-sampling leave-one-out cross-validation.
+
+    Vehtari, Gelman and Gabry 2017, doi 10.1007/s11222-016-9696-4.
+
+    Returns
+    -------
+    dict
+        ``elpd`` (expected log predictive density), ``se``, ``p`` (effective number of parameters), ``pointwise`` ``(N,)``,
+        ``pareto_k`` ``(N,)``, and ``good_k``: above it an estimate is not reliable.
+    """
+    az = arviz()
+    needed = {name: groups[name] for name in ("posterior", "log_likelihood", "observed_data")}
+    with warnings.catch_warnings():
+        # bad Pareto k are reported in words, row by row
+        warnings.simplefilter("ignore")
+        result = az.loo(to_arviz(needed), pointwise=True)
+    elpd = result.elpd_loo if hasattr(result, "elpd_loo") else result.elpd
+    p = result.p_loo if hasattr(result, "p_loo") else result.p
+    pointwise = result.loo_i if hasattr(result, "loo_i") else result.elpd_i
+    return {
+        "elpd": float(elpd),
+        "se": float(result.se),
+        "p": float(p),
+        "pointwise": pointwise.values.reshape(-1),
+        "pareto_k": result.pareto_k.values.reshape(-1),
+        "good_k": float(getattr(result, "good_k", 0.7)),
+    }

@@ -1,0 +1,164 @@
+"""The result of a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.figure import Figure
+
+    from skinbayes.problem import Problem
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Posterior draws of a problem and everything computed from them.
+
+    Attributes
+    ----------
+    groups : the groups of the ArviZ schema by name, each an ``xarray.Dataset``: ``posterior`` (free parameters, and derived
+        quantities marked ``kind = derived``), ``sample_stats``, ``prior``, ``prior_predictive``,
+        ``posterior_predictive``, ``log_likelihood``, ``observed_data``, ``constant_data``. A chain is an ensemble; draws
+        are thinned to near independence and ordered in time. All values in SI.
+    provenance : versions, seed, model text, data source, sampler settings and the stopping rule's numbers
+    problem : the problem, or None if the result was read from a file whose model or data are gone
+    """
+
+    groups: Mapping[str, xarray.Dataset]
+    provenance: Mapping[str, Any]
+    problem: Problem | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+        return str(self.provenance["model"])
+
+    @property
+    def converged(self) -> bool:
+        """Whether the stopping rule was met."""
+        return bool(self.provenance["sampling"]["converged"])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Labels of the free parameters: ``name`` or ``name[level]``."""
+        return tuple(self.provenance["names"])
+
+    def draws(self, label: str, group: str = "posterior") -> FloatArray:
+        """All draws of one parameter or derived quantity (``name`` or ``name[level]``), flat, SI."""
+        name, _, level = label.partition("[")
+        variable = self.groups[group][name]
+        if level:
+            extra = next(str(dimension) for dimension in variable.dims if dimension not in ("chain", "draw"))
+            variable = variable.sel({extra: level.removesuffix("]")})
+        return np.asarray(variable.values, dtype=float).reshape(-1)
+
+    def theta(self, group: str = "posterior") -> FloatArray:
+        """Draws of all free parameters as vectors, shape ``(draws, D)``, SI."""
+        return np.stack([self.draws(label, group) for label in self.names], axis=-1)
+
+    def derived_labels(self) -> tuple[str, ...]:
+        """Labels of the derived quantities that vary, one for each row where they differ by row."""
+        labels: list[str] = []
+        for name, variable in self.groups["posterior"].data_vars.items():
+            if variable.attrs.get("kind") != "derived":
+                continue
+            extra = [dimension for dimension in variable.dims if dimension not in ("chain", "draw")]
+            levels = [f"[{level}]" for level in variable[extra[0]].values] if extra else [""]
+            labels += [f"{name}{level}" for level in levels]
+        return tuple(labels)
+
+    def summary(self, derived: bool = False) -> pandas.DataFrame:
+        """Table of posterior quantiles and convergence.
+
+        Parameters
+        ----------
+        derived : also list derived quantities (they have no effective sample size of their own)
+
+        Returns
+        -------
+        pandas.DataFrame
+            Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), ``ess_bulk``, ``ess_tail``,
+            ``r_hat``, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``.
+        """
+        import pandas
+
+        rows = {}
+        sampling = self.provenance["sampling"]
+        labels = [*self.names, *(self.derived_labels() if derived else ())]
+        for i, label in enumerate(labels):
+            q05, median, q95 = np.quantile(self.draws(label), [0.05, 0.5, 0.95])
+            prior05, prior50, prior95 = np.quantile(self.draws(label, "prior"), [0.05, 0.5, 0.95])
+            free = i < len(self.names)
+            rows[label] = {
+                "unit": self.unit(label),
+                "median": median,
+                "q05": q05,
+                "q95": q95,
+                "ess_bulk": sampling["ess_bulk"][i] if free else np.nan,
+                "ess_tail": sampling["ess_tail"][i] if free else np.nan,
+                "r_hat": sampling["r_hat"][i] if free else np.nan,
+                "prior_median": prior50,
+                "prior_q05": prior05,
+                "prior_q95": prior95,
+            }
+        return pandas.DataFrame.from_dict(rows, orient="index")
+
+    def unit(self, label: str) -> str:
+        """SI unit of a parameter or derived quantity."""
+        return str(self.groups["posterior"][label.partition("[")[0]].attrs.get("units", "1"))
+
+    def symbol(self, label: str) -> str:
+        """Symbol of a parameter or derived quantity, with its level: ``"E0 (wet)"``."""
+        name, _, level = label.partition("[")
+        block = self.provenance.get("derived_symbols", {}).get(name, "")
+        symbol = block or str(self.groups["posterior"][name].attrs.get("symbol", name))
+        return f"{symbol} ({level.removesuffix(']')})" if level else symbol
+
+    def plot_corner(self) -> Figure:
+        """Corner plot of the free parameters."""
+        from skinbayes.plot import plot_corner
+
+        return plot_corner(self)
+
+    def plot_trace(self) -> Figure:
+        """Draws against time for each ensemble."""
+        from skinbayes.plot import plot_trace
+
+        return plot_trace(self)
+
+    def plot_predictive(self) -> Figure:
+        """Observed values against the posterior predictive distribution."""
+        from skinbayes.plot import plot_predictive
+
+        return plot_predictive(self)
+
+    def plot_prior_posterior(self) -> Figure:
+        """Prior against posterior of each parameter."""
+        from skinbayes.plot import plot_prior_posterior
+
+        return plot_prior_posterior(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the result as one netCDF file in the ArviZ schema."""
+        from skinbayes.fit.storage import save_fit
+
+        return save_fit(self, Path(path))
+
+    def to_arviz(self) -> Any:
+        """The result as ArviZ knows it: ``InferenceData`` for ArviZ below 1, ``xarray.DataTree`` from 1 on."""
+        from skinbayes.fit.arviz_adapter import to_arviz
+
+        return to_arviz(self.groups)
+
+    def cite(self) -> list[str]:
+        """What to cite: the theory, the data, the software used."""
+        return list(self.provenance["references"])

@@ -1,0 +1,185 @@
+"""Sample a problem and gather the result."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from skinbayes.errors import InputError
+from skinbayes.fit.references import references
+from skinbayes.fit.result import Fit
+from skinbayes.fit.storage import RESULT, STEPS, SUMMARY, write_run
+from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
+
+if TYPE_CHECKING:
+    from skinbayes.problem import Problem
+    from skinbayes.sampling import Chains, Progress
+
+DEFAULT_SEED = 1
+"""Seed when none is given: the same command gives the same draws."""
+
+DRAWS_PER_CHAIN = 2500
+"""Posterior draws kept of each ensemble; nearly independent, so four ensembles give quantiles to about 0.01 sd."""
+
+PRIOR_DRAWS = 4000
+
+
+def sample(
+    problem: Problem,
+    seed: int = DEFAULT_SEED,
+    ess: float = 2000.0,
+    cores: int = 1,
+    directory: str | Path | None = None,
+    resume: bool = False,
+    progress: Callable[[Progress], None] | None = None,
+    **options: Any,
+) -> Fit:
+    """Sample the posterior of a problem with emcee until the stopping rule is met.
+
+    Several independent ensembles start from the prior and run until autocorrelation time, effective sample size and R-hat
+    over ensembles agree that enough has been sampled (see ``skinbayes.sampling.stopping``). One seed gives the same draws
+    bit for bit on any number of cores, resumed or not.
+
+    Parameters
+    ----------
+    problem : a problem with data and at least one free parameter
+    seed : non-negative integer
+    ess : effective sample size wanted in every parameter
+    cores : worker processes that share the ensembles
+    directory : where to keep steps and result; None keeps everything in memory
+    resume : continue the run in ``directory``
+    progress : called after every block of steps
+    options : further fields of ``skinbayes.sampling.SamplerOptions`` (``max_steps``, ``walkers``, ``ensembles``, …)
+
+    Returns
+    -------
+    Fit
+        Also when the run ended without converging: then ``fit.converged`` is False.
+
+    Raises
+    ------
+    InputError
+        The model has no data or nothing to infer, an option is out of range, or the stored run is another one.
+    KeyboardInterrupt
+        Interrupted; with ``directory`` the steps so far are kept.
+    """
+    from skinbayes.sampling import SamplerOptions, SampleStore, run_ensembles
+
+    if problem.observed is None or problem.dimension == 0:
+        raise InputError(
+            f"{problem.spec.path}: nothing to infer: the model needs [data] and at least one prior"
+        )
+    settings = SamplerOptions(seed=seed, ess=ess, cores=cores, **options)
+    folder = None if directory is None else Path(directory)
+    if folder is not None:
+        if (folder / RESULT).exists() and not resume:
+            raise InputError(
+                f"{folder}: holds a result already; give another folder, or continue it with --resume"
+            )
+        write_run(folder, problem)
+    started, processor = time.perf_counter(), time.process_time()
+    target = problem.target()
+    store = None if folder is None else SampleStore(folder / STEPS, resume=resume)
+    chains = run_ensembles(target, settings, store=store, progress=progress)
+    sampled = time.perf_counter()
+    fit = _gather(problem, chains, settings, seed)
+    fit.provenance["seconds"] = {
+        "sampling": sampled - started,
+        "total": time.perf_counter() - started,
+        "processor": time.process_time() - processor,
+    }
+    if folder is not None:
+        fit.save(folder / RESULT)
+        fit.summary(derived=True).to_csv(folder / SUMMARY, index_label="parameter")
+    return fit
+
+
+def _gather(problem: Problem, chains: Chains, settings: Any, seed: int) -> Fit:
+    positions, log_density = chains.draws(DRAWS_PER_CHAIN)
+    transform = problem.target().transform
+    draws = transform.inverse(positions.reshape(-1, positions.shape[-1])).reshape(positions.shape)
+    rng = np.random.default_rng([seed, 1])  # apart from the streams of the ensembles
+    groups = {
+        **posterior_groups(problem, draws, log_density, rng),
+        **prior_groups(problem, rng, PRIOR_DRAWS),
+        **data_groups(problem),
+    }
+    return Fit(groups=groups, provenance=_provenance(problem, chains, settings), problem=problem)
+
+
+def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, Any]:
+    report = chains.report
+    dataset = problem.dataset
+    data: dict[str, Any] = {"fingerprint": problem.data_fingerprint}
+    if dataset is not None:
+        data |= {"key": dataset.key, "sha256": dataset.sha256, "rows": dataset.n_rows}
+        if dataset.provenance is not None:
+            data |= {
+                "title": dataset.provenance.title,
+                "doi": list(dataset.provenance.doi),
+                "licence": dataset.provenance.licence,
+            }
+    return {
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "model": problem.name,
+        "model_path": str(problem.spec.path) if not _is_shipped(problem) else problem.name,
+        "model_text": problem.spec.text,
+        "title": problem.spec.title,
+        "description": problem.spec.description,
+        "names": list(problem.names),
+        "fixed": {p.label: {"value": p.value, "source": p.source} for p in problem.fixed},
+        "priors": {p.label: {"text": p.prior_text, "unit": p.unit, "source": p.source} for p in problem.free},
+        "derived_symbols": {
+            name: block.symbol for name, block in problem.spec.derived.items() if block.symbol
+        },
+        "fingerprint": problem.fingerprint,
+        "observable": problem.observable,
+        "noise": problem.spec.noise,
+        "data": data,
+        "references": references(problem),
+        "versions": _versions(),
+        "sampling": {
+            "converged": report.converged,
+            "verdict": report.sentence(),
+            "missing": list(report.missing),
+            "seed": settings.seed,
+            "ensembles": settings.ensembles,
+            "walkers": int(chains.positions.shape[2]),
+            "steps": chains.steps,
+            "burn_in": report.burn_in,
+            "thinning": chains.thinning(),
+            "evaluations": chains.evaluations,
+            "invalid": chains.invalid,
+            "acceptance_fraction": [float(value) for value in chains.acceptance_fraction()],
+            "tau": [float(value) for value in report.tau],
+            "ess_bulk": [float(value) for value in report.ess_bulk],
+            "ess_tail": [float(value) for value in report.ess_tail],
+            "r_hat": [float(value) for value in report.r_hat],
+        },
+    }
+
+
+def _is_shipped(problem: Problem) -> bool:
+    from skinbayes.files.locate import shipped_folder
+
+    return problem.spec.path.parent == shipped_folder("models")
+
+
+def _versions() -> dict[str, str]:
+    found = {"python": sys.version.split()[0]}
+    for package in ("skinbayes", "numpy", "scipy", "emcee", "arviz", "xarray", "h5py"):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            from skinbayes import __version__
+
+            if package == "skinbayes":
+                found[package] = __version__
+    return found

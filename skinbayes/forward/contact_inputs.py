@@ -1,0 +1,85 @@
+"""From named inputs to the arguments of contact mechanics; shared by all forward models of dry and wet contact."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.contact import (
+    AREA_CORRECTION,
+    ContactArea,
+    LayeredSkin,
+    elastoplastic_contact_area,
+    reduced_modulus,
+    sphere_contact,
+    stress_variance,
+)
+from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs
+from skinbayes.roughness import PowerSpectrum, SelfAffineSpectrum, TabulatedSpectrum, rms_height
+
+SKIN_INPUTS = ("young_modulus_layer", "young_modulus_bulk", "layer_thickness")
+
+SKIN_DEFAULTS = {
+    "poisson_ratio_layer": 0.5,
+    "poisson_ratio_bulk": 0.5,
+    "yield_stress": np.inf,
+    "area_correction": AREA_CORRECTION,
+}
+"""Incompressible, elastic, with the Yang–Persson correction."""
+
+PRESSURE_ALTERNATIVES = (
+    ("nominal_pressure",),
+    ("normal_force", "nominal_contact_area"),
+    ("normal_force", "sphere_radius"),
+)
+"""How the nominal pressure can be given; the first complete alternative is used."""
+
+
+def spectrum_of(inputs: Inputs, table: PowerSpectrum | None) -> PowerSpectrum:
+    """Return the roughness spectrum: self-affine from the five roughness inputs, or the table.
+
+    A table is scaled to ``rms_height`` if that input is given.
+    """
+    if table is None:
+        return SelfAffineSpectrum(*(inputs[name] for name in ROUGHNESS_INPUTS))
+    if "rms_height" in inputs and isinstance(table, TabulatedSpectrum):
+        scale = (inputs["rms_height"] / rms_height(table)) ** 2 * np.asarray(table.scale)
+        return TabulatedSpectrum(table.wavevector, table.power, scale=scale)
+    return table
+
+
+def skin_of(inputs: Inputs) -> LayeredSkin:
+    """Return the layered skin of ``inputs``."""
+    return LayeredSkin(
+        young_modulus_layer=inputs["young_modulus_layer"],
+        young_modulus_bulk=inputs["young_modulus_bulk"],
+        poisson_ratio_layer=inputs["poisson_ratio_layer"],
+        poisson_ratio_bulk=inputs["poisson_ratio_bulk"],
+        layer_thickness=inputs["layer_thickness"],
+    )
+
+
+def nominal_pressure_of(inputs: Inputs) -> FloatArray:
+    """Return p0 [Pa]: as given, load over nominal area, or the mean Hertz pressure of a sphere on the soft bulk.
+
+    The Hertz pressure uses the modulus of the tissue below the layer: the layer is far thinner than the contact is wide.
+    """
+    if "nominal_pressure" in inputs:
+        return np.asarray(inputs["nominal_pressure"], dtype=float)
+    if "nominal_contact_area" in inputs:
+        return np.asarray(inputs["normal_force"] / inputs["nominal_contact_area"], dtype=float)
+    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
+    return np.asarray(
+        sphere_contact(inputs["normal_force"], inputs["sphere_radius"], modulus).mean_pressure, dtype=float
+    )
+
+
+def contact_area_of(
+    inputs: Inputs, table: PowerSpectrum | None, variance: FloatArray | None = None
+) -> ContactArea:
+    """Return the relative contact area (elastic, plastic) at full magnification, or for a given stress variance."""
+    if variance is None:
+        variance = stress_variance(spectrum_of(inputs, table), skin_of(inputs))
+    return elastoplastic_contact_area(
+        nominal_pressure_of(inputs), variance, inputs["yield_stress"], inputs["area_correction"]
+    )

@@ -1,0 +1,46 @@
+"""Forward model ``friction``: μ = σ_f A/F_N with the contact area of layered, rough, elastoplastic skin (Sect. 4)."""
+
+from __future__ import annotations
+
+from skinbayes.arrays import FloatArray
+from skinbayes.forward.base import ForwardModel, Inputs
+from skinbayes.forward.contact_area import CONTACT_AREA_PROFILE
+from skinbayes.forward.contact_inputs import (
+    PRESSURE_ALTERNATIVES,
+    SKIN_DEFAULTS,
+    SKIN_INPUTS,
+    contact_area_of,
+    nominal_pressure_of,
+    spectrum_of,
+)
+from skinbayes.friction import friction_coefficient
+from skinbayes.roughness import PowerSpectrum, rms_slope
+
+
+def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+    area = contact_area_of(inputs, table).total
+    shear_stress = inputs["frictional_shear_stress"]
+    return {"friction_coefficient": friction_coefficient(shear_stress, area, nominal_pressure_of(inputs))}
+
+
+def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+    area = contact_area_of(inputs, table)
+    return {
+        "nominal_pressure": nominal_pressure_of(inputs),
+        "rms_slope": rms_slope(spectrum_of(inputs, table)),
+        "relative_contact_area": area.total,
+        "plastic_share": area.plastic_share,
+    }
+
+
+MODEL = ForwardModel(
+    name="friction",
+    summary="friction coefficient of skin on a smooth hard surface: shear stress times area of real contact over load",
+    observables=("friction_coefficient",),
+    required=("frictional_shear_stress", *SKIN_INPUTS, PRESSURE_ALTERNATIVES),
+    optional=SKIN_DEFAULTS,
+    evaluate=_evaluate,
+    derived=_derived,
+    derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_share"),
+    profiles=(CONTACT_AREA_PROFILE,),
+)

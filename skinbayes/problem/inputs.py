@@ -1,0 +1,108 @@
+"""From a parameter vector and rows of conditions to the named inputs of a forward model."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+from skinbayes.files.parameter_block import ParameterSpec
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Rows at which a forward model is evaluated.
+
+    Attributes
+    ----------
+    values : quantity to SI values, each of shape ``(n_rows,)``
+    labels : grouping column to text values, each of shape ``(n_rows,)``
+    n_rows : number of rows
+    """
+
+    values: Mapping[str, FloatArray]
+    labels: Mapping[str, NDArray[np.str_]]
+    n_rows: int
+
+    def without(self, names: Collection[str]) -> Conditions:
+        """The same rows without some of the quantities."""
+        return Conditions({k: v for k, v in self.values.items() if k not in names}, self.labels, self.n_rows)
+
+    def row_labels(self) -> list[str]:
+        """A short name for each row: a grouping column or all of them together if that tells rows apart, else a number."""
+        telling = [
+            [str(value) for value in column] for column in self.labels.values() if len(set(column)) > 1
+        ]
+        joined = [", ".join(parts) for parts in zip(*telling, strict=True)] if telling else []
+        for names in (*telling, joined):
+            if len(set(names)) == self.n_rows:
+                return names
+        return [str(row + 1) for row in range(self.n_rows)]
+
+
+@dataclass(frozen=True)
+class InputPlan:
+    """How to assemble one input for all rows: from the parameter vector, from fixed values, or both.
+
+    Attributes
+    ----------
+    name : input of the forward model
+    index : position in the parameter vector for each row, −1 where the value is fixed; shape ``(1,)`` or ``(n_rows,)``
+    fixed : fixed value for each row, NaN where free; same shape
+    """
+
+    name: str
+    index: NDArray[np.intp]
+    fixed: FloatArray
+
+    def values(self, theta: FloatArray) -> FloatArray:
+        """Values for a batch of parameter vectors ``(B, D)``: shape ``(B, 1)`` or ``(B, n_rows)``; ``(1, ·)`` if fixed."""
+        if (self.index < 0).all():
+            return self.fixed[np.newaxis, :]
+        free = np.ascontiguousarray(theta[:, np.maximum(self.index, 0)])
+        return np.where(self.index >= 0, free, self.fixed)
+
+
+def plan_inputs(
+    fixed: Sequence[ParameterSpec], free: Sequence[ParameterSpec], conditions: Conditions
+) -> tuple[InputPlan, ...]:
+    """Work out where each input comes from for the given rows.
+
+    Raises
+    ------
+    InputError
+        A parameter has values for each level of a grouping column that the rows lack, or a row has a level without value.
+    """
+    by_name: dict[str, list[tuple[ParameterSpec, int]]] = {}
+    for spec in fixed:
+        by_name.setdefault(spec.name, []).append((spec, -1))
+    for position, spec in enumerate(free):
+        by_name.setdefault(spec.name, []).append((spec, position))
+    return tuple(_plan_one(name, entries, conditions) for name, entries in by_name.items())
+
+
+def _plan_one(name: str, entries: list[tuple[ParameterSpec, int]], conditions: Conditions) -> InputPlan:
+    column = entries[0][0].by
+    if column is None:
+        (spec, position), *_ = entries
+        value = np.nan if spec.value is None else spec.value
+        return InputPlan(name, np.array([position]), np.array([value]))
+    if column not in conditions.labels:
+        raise InputError(f"{name} differs by '{column}', but the rows have no column '{column}'")
+    index = np.full(conditions.n_rows, -2)
+    fixed = np.full(conditions.n_rows, np.nan)
+    for spec, position in entries:
+        here = conditions.labels[column] == spec.level
+        index[here] = position
+        fixed[here] = np.nan if spec.value is None else spec.value
+    if (index == -2).any():
+        missing = sorted({str(level) for level in conditions.labels[column][index == -2]})
+        known = ", ".join(str(spec.level) for spec, _ in entries)
+        raise InputError(
+            f"{name} differs by '{column}' and has values for {known}, but rows have {', '.join(missing)}"
+        )
+    return InputPlan(name, index, fixed)

@@ -1,0 +1,100 @@
+"""What the priors alone predict, beside the data."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from skinbayes.errors import InputError
+
+if TYPE_CHECKING:
+    from skinbayes.problem.problem import Problem
+
+SURPRISING = 0.005
+"""A datum with a smaller share of prior predictive draws on one side of it contradicts the priors."""
+
+
+@dataclass(frozen=True)
+class PredictedRow:
+    """One datum and the prior predictive distribution at its conditions, SI; ``share_below`` of the draws lie below it."""
+
+    label: str
+    observed: float
+    q05: float
+    median: float
+    q95: float
+    share_below: float
+
+
+@dataclass(frozen=True)
+class PriorPredictive:
+    """Prior predictive comparison of a problem.
+
+    Attributes
+    ----------
+    model, observable : names
+    rows : one entry for each datum
+    draws : number of prior draws
+    failed : draws for which the forward model gave no finite prediction
+    """
+
+    model: str
+    observable: str
+    rows: tuple[PredictedRow, ...]
+    draws: int
+    failed: int
+
+    def sentences(self) -> list[str]:
+        """What the comparison says, in words."""
+        said = []
+        outside = [row.label for row in self.rows if min(row.share_below, 1 - row.share_below) < SURPRISING]
+        within = sum(row.q05 <= row.observed <= row.q95 for row in self.rows)
+        said.append(
+            f"{within} of {len(self.rows)} data lie inside the 5-95 % range of what the priors predict."
+        )
+        if outside:
+            said.append(
+                f"Row {', '.join(outside[:5])} lies where almost no prior draw predicts anything: the priors (or the model) "
+                "contradict the data before any fit."
+            )
+        if self.failed:
+            said.append(
+                f"{self.failed} of {self.draws} prior draws give no finite prediction and count as impossible."
+            )
+        return said
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain types."""
+        return asdict(self) | {"sentences": self.sentences()}
+
+
+def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> PriorPredictive:
+    """Draw data from the priors and compare them with the observed ones.
+
+    Parameters
+    ----------
+    problem : a problem with data
+    seed : seed of the draws
+    draws : number of prior draws
+
+    Raises
+    ------
+    InputError
+        The model has no data, or no prior draw gives a finite prediction.
+    """
+    observable = problem.observable
+    rng = np.random.default_rng([seed, 2])
+    simulated = problem.simulate(problem.draw_prior(rng, draws), rng)
+    usable = simulated[np.isfinite(simulated).all(axis=1)]
+    if len(usable) == 0:
+        raise InputError(f"{problem.spec.path}: no prior draw gives a finite {observable}")
+    quantiles = np.quantile(usable, [0.05, 0.5, 0.95], axis=0)
+    observed = np.asarray(problem.observed)
+    below = (usable < observed).mean(axis=0)
+    rows = tuple(
+        PredictedRow(label, *(float(v) for v in (observed[i], *quantiles[:, i], below[i])))
+        for i, label in enumerate(problem.conditions.row_labels())
+    )
+    return PriorPredictive(problem.name, observable, rows, draws, draws - len(usable))
