@@ -1,0 +1,72 @@
+"""Hertz contact of a sphere with a flat."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from skinbayes.arrays import ArrayLike, FloatArray
+
+
+class HertzSphere(NamedTuple):
+    """Hertz contact of a sphere.
+
+    Attributes
+    ----------
+    contact_radius : m
+    mean_pressure : load over contact area, Pa
+    maximum_pressure : pressure at the centre, Pa
+    indentation : approach of distant points, m
+    """
+
+    contact_radius: FloatArray
+    mean_pressure: FloatArray
+    maximum_pressure: FloatArray
+    indentation: FloatArray
+
+
+def sphere_contact(
+    normal_force: ArrayLike, sphere_radius: ArrayLike, reduced_modulus: ArrayLike
+) -> HertzSphere:
+    """Smooth elastic contact of a rigid sphere with a half-space (above Eq. 9 of the paper).
+
+    ``a³ = 3 F_N R/(4 E*)``, mean pressure ``F_N/(π a²) = (2/3π)(6 F_N E*²/R²)^(1/3)``, maximum 3/2 of it,
+    indentation a²/R. (The paper prints E* without the square in the mean pressure.)
+
+    Parameters
+    ----------
+    normal_force : F_N, N, ≥ 0, any shape
+    sphere_radius : R, m, > 0, broadcasts
+    reduced_modulus : E*, Pa, > 0, broadcasts; for skin that of the tissue, see
+        `skinbayes.contact.reduced_modulus`
+
+    Returns
+    -------
+    contact : `HertzSphere` of broadcast shape; nan where an argument is impossible
+
+    Notes
+    -----
+    Valid for a contact radius much smaller than the sphere's; on skin it is often not small, and the layer is
+    neglected.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), Sect. 4.2, doi 10.1017/CBO9781139171731.
+
+    Examples
+    --------
+    >>> contact = sphere_contact(0.5, 8e-3, 20e3 / 0.75)
+    >>> print(f"{contact.contact_radius:.4e} m, {contact.mean_pressure:.1f} Pa")
+    4.8274e-03 m, 6829.4 Pa
+    """
+    force, radius, modulus = (
+        np.asarray(x, dtype=np.float64) for x in (normal_force, sphere_radius, reduced_modulus)
+    )
+    with np.errstate(all="ignore"):
+        force = np.where((force >= 0) & (radius > 0) & (modulus > 0), force, np.nan)
+        contact_radius = np.cbrt(0.75 * force * radius / modulus)
+        mean = 2 / (3 * np.pi) * np.cbrt(6 * force * np.square(modulus / radius))
+        return HertzSphere(
+            contact_radius[()], mean[()], (1.5 * mean)[()], (np.square(contact_radius) / radius)[()]
+        )

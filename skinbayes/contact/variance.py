@@ -1,0 +1,59 @@
+"""Variance of the contact stress that roughness causes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.layered import SATURATION, LayeredSkin, inverse_response, reduced_modulus
+from skinbayes.roughness._fields import with_axes
+from skinbayes.roughness.spectrum import PowerSpectrum
+
+
+def stress_variance(
+    spectrum: PowerSpectrum, skin: LayeredSkin, wavevector: ArrayLike | None = None
+) -> FloatArray:
+    """Width of the stress distribution in complete contact, ``V = π ∫ q³ C(q) E_eff(q)² dq``, Pa².
+
+    V is ``4 p0² G`` with G of Eq. 3 of the paper; the stress variance proper is V/2.
+
+    Parameters
+    ----------
+    spectrum : power spectrum, C in m^4
+    skin : moduli in Pa, thickness in m; broadcasts with the spectrum
+    wavevector : upper end of the band, 1/m, shape ``(K,)`` or ``(..., K)``, or a scalar; None for the whole
+        band. Below the band V is 0, beyond it V is that of the whole band.
+
+    Returns
+    -------
+    stress_variance : Pa², batch shape, plus the axis of ``wavevector`` if given; nan for impossible
+        parameters
+
+    Notes
+    -----
+    Gauss–Legendre in ln q where the layer is felt, a closed form above. For skin-like parameters (d from 5 to
+    100 µm, q0 from 3e2 to 5e3 1/m, E0/E1 from 1 to 1e6) the relative error is below 1e-7.
+
+    References
+    ----------
+    Persson, J. Chem. Phys. 115 (2001) 3840, doi 10.1063/1.1388626.
+
+    Examples
+    --------
+    >>> from skinbayes.roughness import named_surface
+    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> print(f"{stress_variance(named_surface('paper_reference'), wet):.5e}")
+    3.36644e+14
+    """
+    if wavevector is None:
+        upper, axes = None, 0
+    else:
+        upper, axes = np.atleast_1d(np.asarray(wavevector, dtype=np.float64)), 1
+    with np.errstate(all="ignore"):
+        saturation = SATURATION / skin.layer_thickness
+        nodes, weights, remainder = spectrum.slope_quadrature(saturation, upper)
+        # sums must run along a contiguous last axis, so that a batch and its rows agree to the last bit
+        terms = np.ascontiguousarray(weights * np.square(inverse_response(skin, nodes, axes + 1)))
+        layer = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), axes)
+        total = np.pi * np.square(layer) * (terms.sum(axis=-1) + remainder)
+    return np.asarray(total if wavevector is None or np.ndim(wavevector) else total[..., 0])[()]

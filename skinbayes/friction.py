@@ -1,0 +1,44 @@
+"""From the area of real contact to the friction coefficient."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import ArrayLike, FloatArray
+
+
+def friction_coefficient(
+    frictional_shear_stress: ArrayLike, relative_contact_area: ArrayLike, nominal_pressure: ArrayLike
+) -> FloatArray:
+    """Friction coefficient at a constant frictional shear stress, ``μ = σ_f A/(A0 p0)`` (Sect. 4 of the paper).
+
+    Parameters
+    ----------
+    frictional_shear_stress : σ_f, Pa, any shape
+    relative_contact_area : A/A0, dimensionless, broadcasts
+    nominal_pressure : p0, Pa, > 0, broadcasts
+
+    Returns
+    -------
+    friction_coefficient : μ, dimensionless, broadcast shape; nan or inf where p0 = 0
+
+    Notes
+    -----
+    Adhesive friction only: ploughing and hysteresis of the tissue (about 0.05 for skin) are not included.
+    Where all contacts have yielded A/A0 = p0/σ_Y and μ = σ_f/σ_Y, whatever the roughness and the moduli.
+
+    References
+    ----------
+    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 4).
+
+    Examples
+    --------
+    >>> print(f"{friction_coefficient(15e6, 6.48133e-4, 6830.0):.4f}")
+    1.4234
+    """
+    shear, area, pressure = (
+        np.asarray(x, dtype=np.float64)
+        for x in (frictional_shear_stress, relative_contact_area, nominal_pressure)
+    )
+    with np.errstate(all="ignore"):
+        return np.asarray(shear * area / pressure)[()]
