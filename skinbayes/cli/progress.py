@@ -13,7 +13,7 @@ import numpy as np
 from skinbayes.cli.output import console
 
 if TYPE_CHECKING:
-    from skinbayes.sampling import Progress
+    from skinbayes.sampling.ensembles import Progress
 
 QUIET_SECONDS = 15.0
 """Without a terminal one line is written each time this much time has passed."""

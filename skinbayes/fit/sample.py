@@ -20,7 +20,8 @@ from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
 
 if TYPE_CHECKING:
     from skinbayes.problem import Problem
-    from skinbayes.sampling import Chains, Progress
+    from skinbayes.sampling.chains import Chains
+    from skinbayes.sampling.ensembles import Progress
 
 DEFAULT_SEED = 1
 """Seed when none is given: the same command gives the same draws."""
@@ -70,7 +71,9 @@ def sample(
     KeyboardInterrupt
         Interrupted; with ``directory`` the steps so far are kept.
     """
-    from skinbayes.sampling import SamplerOptions, SampleStore, run_ensembles
+    from skinbayes.sampling.ensembles import run_ensembles
+    from skinbayes.sampling.options import SamplerOptions
+    from skinbayes.sampling.store import SampleStore
 
     if problem.observed is None or problem.dimension == 0:
         raise InputError(
