@@ -134,7 +134,8 @@ def convert_array(
     numbers = np.asarray(values, dtype=float)
     if offset != 0.0 and not difference:
         return np.asarray(numbers + offset)
-    return np.asarray(numbers * multiplier / divisor)
+    with np.errstate(over="ignore"):  # a value beyond the largest number becomes inf, which readers refuse
+        return np.asarray(numbers * multiplier / divisor)
 
 
 def _explained_conversion(from_unit: str, to_unit: str, where: str, found: str) -> tuple[float, float, float]:

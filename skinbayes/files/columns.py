@@ -144,6 +144,8 @@ def _identify(header: str) -> tuple[str, Quantity | None, str]:
         known = [*vocabulary.QUANTITIES, *vocabulary.LABELS]
         guess = vocabulary.suggestions(name[:80].replace(" ", "_").lower(), known)
         what = "a column without a name" if name == "" else f"unknown column {quoted(name)}"
+        if "(" in name:
+            guess += " Units stand in square brackets."
         raise InputError(f"{what}; expected a quantity or label that skinbayes knows.{guess}".rstrip("."))
     if unit is None or unit == "":
         raise InputError(

@@ -14,13 +14,15 @@ from skinbayes.roughness import TabulatedSpectrum
 from skinbayes.units import describe_unit, split_header
 from skinbayes.vocabulary import Quantity, suggestions
 
-_WAVEVECTOR = Quantity("wavevector", "q", "1/m", "roughness wavevector, 2π over the wavelength")
+# Ranges far wider than any surface, from kilometres to below atoms; they keep powers of the values finite.
+_WAVEVECTOR = Quantity("wavevector", "q", "1/m", "roughness wavevector, 2π/wavelength", 1e-3, 1e12, False)
 _POWER = {
-    "power_spectrum_2d": Quantity(
-        "power_spectrum_2d", "C", "m^4", "isotropic two-dimensional power spectrum"
-    ),
-    "power_spectrum_1d": Quantity("power_spectrum_1d", "C1", "m^3", "power spectrum of line profiles"),
+    "power_spectrum_2d": Quantity("power_spectrum_2d", "C", "m^4", "two-dimensional", 1e-80, 1e10, False),
+    "power_spectrum_1d": Quantity("power_spectrum_1d", "C1D", "m^3", "of line profiles", 1e-80, 1e10, False),
 }
+MAX_ROWS = {"power_spectrum_2d": 10_000, "power_spectrum_1d": 500}
+"""Rows of a spectrum: the cost of a likelihood grows with the rows of a two-dimensional spectrum, that of the
+conversion from line profiles with their square."""
 _EXPECTED = (
     "expected the columns 'wavevector [1/m]' and 'power_spectrum_2d [m^4]' or 'power_spectrum_1d [m^3]'"
 )
@@ -31,8 +33,9 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
 
     The CSV has a column ``wavevector`` (``[1/m]`` or a unit that converts to it, 2π over the wavelength) and
     either ``power_spectrum_2d [m^4]``, in the convention of the paper (Eq. 1), whose mean square height is
-    ``2π ∫ q C(q) dq``, or ``power_spectrum_1d [m^3]`` of line profiles, which is converted. The name of the
-    column decides: a number cannot tell which of the two it is.
+    ``2π ∫ q C(q) dq``, or ``power_spectrum_1d [m^3]`` of line profiles, whose mean square height is
+    ``2 ∫ C1D(q) dq`` over q > 0, which is converted. The name of the column decides: a number cannot tell which
+    of the two it is.
 
     Parameters
     ----------
@@ -47,15 +50,21 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
     ------
     InputError
         naming line and column, for a missing or unknown column, a unit of another dimension, cells that are
-        not positive finite numbers, wavevectors that do not increase, or fewer than two rows
+        not positive finite numbers, wavevectors that do not increase, fewer than two or too many rows, or
+        profiles that no isotropic surface has
     """
     path = Path(path)
-    table = read_table(path)
+    table = read_table(path, max_rows=max(MAX_ROWS.values()))
     named = _columns(table)
     problems = Problems(path)
     position, unit = named["wavevector"]
     wavevector = read_quantity(table, position, _WAVEVECTOR, unit, problems)
     power_name = next(name for name in _POWER if name in named)
+    if len(table.rows) > MAX_ROWS[power_name]:
+        raise InputError(
+            f"{path}: {len(table.rows)} rows of {power_name}; expected at most {MAX_ROWS[power_name]}: average "
+            "the spectrum over bands of wavevectors"
+        )
     power_position, power_unit = named[power_name]
     power = read_quantity(table, power_position, _POWER[power_name], power_unit, problems)
     _check_increasing(table, position, wavevector, unit, problems)
@@ -64,9 +73,13 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
         raise InputError(
             f"{path}, line {table.lines[0]}: a single row; expected a spectrum of at least two rows"
         )
-    if power_name == "power_spectrum_1d":
-        return TabulatedSpectrum.from_profile(wavevector, power)
-    return TabulatedSpectrum(wavevector, power)
+    try:
+        if power_name == "power_spectrum_2d":
+            return TabulatedSpectrum(wavevector, power)
+        with np.errstate(all="ignore"):  # the result is checked
+            return TabulatedSpectrum.from_profile(wavevector, power)
+    except InputError as error:
+        raise InputError(f"{path}, column '{power_name}': {error}") from None
 
 
 def _columns(table: Table) -> dict[str, tuple[int, str]]:
@@ -93,11 +106,10 @@ def _columns(table: Table) -> dict[str, tuple[int, str]]:
 
 def _check_increasing(table: Table, position: int, values: FloatArray, unit: str, problems: Problems) -> None:
     cells = table.column(position)
-    for row in np.flatnonzero(~(np.diff(values) > 0)).tolist():
-        if np.isfinite(values[row]) and np.isfinite(values[row + 1]):
-            problems.add(
-                table.lines[row + 1],
-                position,
-                f", column 'wavevector': found {cells[row + 1][:30]} {unit} after {cells[row][:30]} {unit}; "
-                "expected wavevectors that increase from row to row",
-            )
+    for row in np.flatnonzero(values[1:] <= values[:-1]).tolist():
+        problems.add(
+            table.lines[row + 1],
+            position,
+            f", column 'wavevector': found {cells[row + 1][:30]} {unit} after {cells[row][:30]} {unit}; "
+            "expected wavevectors that increase from row to row",
+        )

@@ -105,7 +105,7 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS) -> Table:
         if len(rows) == max_rows:
             raise InputError(
                 f"{path}, line {number}: more than {max_rows} rows of data; expected at most {max_rows}, "
-                "for example after averaging repeated readings"
+                "for example after averaging neighbouring rows"
             )
         if len(cells) != len(header):
             hint = "; is the decimal separator a comma?" if len(cells) > len(header) else ""
