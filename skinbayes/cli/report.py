@@ -21,11 +21,8 @@ def report(run: str, output: str | None, as_json: bool) -> None:
     from skinbayes.report import write_report
 
     fit = load_fit(run)
-    if output:
-        page = Path(output)
-    else:
-        page = Path(run) / "report.html" if Path(run).is_dir() else Path(run).with_suffix(".html")
-    written = write_report(fit, page)
+    beside = Path(run) / "report.html" if Path(run).is_dir() else Path(run).with_suffix(".html")
+    written = write_report(fit, Path(output) if output else beside)
     if as_json:
         print_json({"run": run, "report": str(written), "converged": fit.converged})
     else:

@@ -41,9 +41,10 @@ class SurfaceBlock(_Strict):
 
 
 class DerivedBlock(_Strict):
-    """``[derived.NAME]``: a product of powers of parameters and intermediate quantities."""
+    """``[derived.NAME]``: a product of powers of parameters and intermediate quantities, for all or some rows."""
 
-    product: dict[str, float]
+    product: dict[str, float | int]
+    rows: dict[str, list[str]] = Field(default_factory=dict)
     meaning: str = ""
     symbol: str = ""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,7 +29,7 @@ def save_fit(fit: Fit, path: Path) -> Path:
         dataset = group.assign_attrs(skinbayes=json.dumps(fit.provenance)) if name == "posterior" else group
         dataset.to_netcdf(temporary, mode=mode, group=name, engine="h5netcdf")
         mode = "a"
-    os.replace(temporary, path)
+    temporary.replace(path)
     return path
 
 

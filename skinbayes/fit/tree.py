@@ -92,16 +92,23 @@ def _parameters(problem: Problem, draws: FloatArray) -> xarray.Dataset:
                 coordinates[dimension] = levels
             variables[name] = (("chain", "draw", dimension), draws[..., [i for i, _ in entries]])
     derived = _in_chunks(problem.derived, draws)
+    labels = problem.conditions.row_labels()
     for name, values in derived.items():
-        if values.shape[-1] == 1:
+        if values.shape[-1] not in (1, problem.conditions.n_rows):
+            chosen = problem.conditions.matching(problem.spec.derived[name].rows)
+            coordinates[f"{name}_row"] = [row for row, use in zip(labels, chosen, strict=True) if use]
+            variables.setdefault(name, (("chain", "draw", f"{name}_row"), values))
+        elif values.shape[-1] == 1:
             variables.setdefault(name, (("chain", "draw"), values[..., 0]))
         else:
-            coordinates["row"] = problem.conditions.row_labels()
+            coordinates["row"] = labels
             variables.setdefault(name, (("chain", "draw", "row"), values))
     dataset = _dataset(variables, problem, draws, coordinates)
     for name, variable in dataset.data_vars.items():
-        kind = "derived" if name in derived and not any(p.name == name for p in problem.free) else "parameter"
-        variable.attrs["kind"] = kind
+        variable.attrs["kind"] = "parameter" if any(p.name == name for p in problem.free) else "derived"
+        block = problem.spec.derived.get(str(name))
+        if block is not None:
+            variable.attrs |= {"long_name": block.meaning, "symbol": block.symbol or str(name)}
     return dataset
 
 

@@ -49,6 +49,7 @@ class ForwardModel:
     optional : inputs with default values, SI
     exclusive : further sets of alternatives of which at most one may be given, such as wavevector or magnification
     derived_names : names of the ``derived`` quantities
+    blocks : those of them that may stand for the parameters behind them when combinations are named (``rms_slope``)
     accepted : further inputs that may be given and have no default
     evaluate : ``(inputs, table) -> {observable: (B, N)}``; ``table`` is a tabulated spectrum or None
     derived : quantities between inputs and observables (``rms_slope``, ``nominal_pressure``), same calling convention
@@ -65,6 +66,7 @@ class ForwardModel:
     derived: Callable[[Inputs, PowerSpectrum | None], dict[str, FloatArray]]
     exclusive: tuple[tuple[tuple[str, ...], ...], ...] = ()
     derived_names: tuple[str, ...] = ()
+    blocks: tuple[str, ...] = ()
     accepted: tuple[str, ...] = ()
     profiles: tuple[Profile, ...] = field(default=())
     uses_surface: bool = True

@@ -103,5 +103,6 @@ MODEL = ForwardModel(
     evaluate=_evaluate,
     derived=_derived,
     derived_names=("nominal_pressure", "rms_slope"),
+    blocks=("rms_slope",),
     profiles=(CONTACT_AREA_PROFILE,),
 )

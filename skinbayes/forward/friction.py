@@ -42,5 +42,6 @@ MODEL = ForwardModel(
     evaluate=_evaluate,
     derived=_derived,
     derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_share"),
+    blocks=("rms_slope",),
     profiles=(CONTACT_AREA_PROFILE,),
 )

@@ -32,6 +32,13 @@ class Conditions:
         """The same rows without some of the quantities."""
         return Conditions({k: v for k, v in self.values.items() if k not in names}, self.labels, self.n_rows)
 
+    def matching(self, wanted: Mapping[str, Collection[str]]) -> NDArray[np.bool_]:
+        """Which rows have one of the wanted levels in each of the named grouping columns, shape ``(n_rows,)``."""
+        chosen = np.ones(self.n_rows, dtype=bool)
+        for column, levels in wanted.items():
+            chosen &= np.isin(self.labels[column], list(levels))
+        return chosen
+
     def row_labels(self) -> list[str]:
         """A short name for each row: a grouping column or all of them together if that tells rows apart, else a number."""
         telling = [

@@ -240,6 +240,12 @@ def _check_derived(
         return
     known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names)
     for name, block in spec.derived.items():
+        for column, levels in block.rows.items():
+            unknown = set(levels) - set(conditions.labels.get(column, ()))
+            if unknown and conditions.n_rows > 1:
+                raise InputError(
+                    f"{spec.path}: derived.{name}.rows: no row has {column} = {sorted(unknown)[0]!r}"
+                )
         for factor in block.product:
             if factor not in known:
                 raise InputError(

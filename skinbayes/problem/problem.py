@@ -154,19 +154,26 @@ class Problem:
             for name, value in predicted.items()
         }
 
-    def derived(self, theta: ArrayLike, conditions: Conditions | None = None) -> dict[str, FloatArray]:
-        """Quantities between inputs and observables (and the products named in the model file), ``(B, 1)`` or ``(B, N)``."""
+    def derived(self, theta: ArrayLike) -> dict[str, FloatArray]:
+        """Quantities between inputs and observables at the problem's rows, and the products named in the model file.
+
+        Returns
+        -------
+        dict
+            Name to values, SI: ``(B, 1)`` if they are the same for all rows (of those the product is defined for), else
+            ``(B, N)``, or ``(B, n)`` for a product that is defined for n of the rows.
+        """
         batch, _ = self._batch(theta)
-        inputs = self.inputs(batch, conditions)
+        inputs = self.inputs(batch)
         with np.errstate(all="ignore"):
             quantities = dict(self.forward.derived(inputs, self.table))
+            known = inputs | quantities
             for name, block in self.spec.derived.items():
-                factors = [
-                    np.asarray((inputs | quantities)[key]) ** power for key, power in block.product.items()
-                ]
-                product = factors[0]
-                for factor in factors[1:]:
-                    product = product * factor
+                product = np.ones((1, 1))
+                for factor, power in block.product.items():
+                    product = product * np.asarray(known[factor]) ** power
+                if block.rows and product.shape[-1] > 1:
+                    product = product[:, self.conditions.matching(block.rows)]
                 quantities[name] = product
         return {name: np.array(np.atleast_2d(value)) for name, value in quantities.items()}
 
@@ -218,6 +225,22 @@ class Problem:
         from skinbayes.problem.target import PosteriorTarget
 
         return PosteriorTarget(self)
+
+    def noise_width(self, theta: FloatArray) -> FloatArray:
+        """Width of the noise of each row at one parameter vector ``(D,)``, shape ``(N,)``.
+
+        In the unit of the observable; for logarithmic noise families the width of its ln.
+        """
+        batch, _ = self._batch(theta)
+        arguments = self._noise_arguments(batch)
+        arguments.pop("degrees_of_freedom", None)
+        width = self._noise.width(self.predict(batch)[self.observable], observed=self.observed, **arguments)
+        return np.array(np.broadcast_to(width, (1, self.conditions.n_rows))[0])
+
+    @property
+    def noise_is_logarithmic(self) -> bool:
+        """Whether it is ln of the observable that scatters."""
+        return self._noise.logarithmic
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 

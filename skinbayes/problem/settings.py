@@ -41,7 +41,7 @@ def apply_settings(
         if key == "surface" and forward.uses_surface:
             surface = text
             continue
-        name, level = (key[:-1].split("[", 1) + [""])[:2] if key.endswith("]") else (key, "")
+        name, _, level = key.removesuffix("]").partition("[")
         if name not in known or name not in QUANTITIES:
             raise InputError(f"--set {key}: '{spec.name}' has no input '{name}'.{suggestions(name, sorted(known))} "
                              f"It takes {', '.join(sorted(known))}")  # fmt: skip

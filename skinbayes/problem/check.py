@@ -1,0 +1,185 @@
+"""Looking at a problem before sampling: priors, finite predictions, and what the data can tell apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.diagnose.findings import Identifiability
+from skinbayes.diagnose.identifiability import identify
+from skinbayes.errors import InputError
+from skinbayes.files.modelfile import NOISE_PARAMETERS
+
+if TYPE_CHECKING:
+    from skinbayes.problem.problem import Problem
+
+DRAWS = 1000
+"""Prior draws that are tried."""
+
+MOST_LEVELS = 5
+"""Grouping columns with more levels than this (people) are not looked at level by level."""
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """What can be said about a problem before sampling.
+
+    Attributes
+    ----------
+    model : name
+    setup, priors, predictions : sentences
+    identifiability : which combinations of parameters the data determine; None without data
+    """
+
+    model: str
+    setup: tuple[str, ...]
+    priors: tuple[str, ...]
+    predictions: tuple[str, ...]
+    identifiability: Identifiability | None
+
+    def sections(self) -> list[tuple[str, list[str]]]:
+        """Titles with their sentences."""
+        found = [] if self.identifiability is None else self.identifiability.sentences()
+        sections = [
+            ("Model and data", list(self.setup)),
+            ("Priors", list(self.priors)),
+            ("Predictions over the prior", list(self.predictions)),
+            ("What these data can tell", found),
+        ]
+        return [(title, sentences) for title, sentences in sections if sentences]
+
+    def sentences(self) -> list[str]:
+        """All sentences."""
+        return [sentence for _, sentences in self.sections() for sentence in sentences]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain types."""
+        found = None if self.identifiability is None else self.identifiability.as_dict()
+        return {"model": self.model, "sections": dict(self.sections()), "identifiability": found}
+
+
+def check_problem(problem: Problem, seed: int = 1) -> CheckReport:
+    """Check a problem before sampling.
+
+    Parameters
+    ----------
+    problem : any problem
+    seed : seed of the prior draws
+
+    Raises
+    ------
+    InputError
+        No prior draw gives a finite prediction.
+    """
+    draws = problem.draw_prior(np.random.default_rng([seed, 3]), DRAWS) if problem.free else np.zeros((1, 0))
+    predictions, usable = _predictions(problem, draws)
+    identifiability = None
+    if problem.observed is not None and problem.free:
+        identifiability = _identify(problem, draws[usable])
+    return CheckReport(problem.name, _setup(problem), _priors(problem), predictions, identifiability)
+
+
+def _setup(problem: Problem) -> tuple[str, ...]:
+    free, fixed = len(problem.free), len(problem.fixed)
+    said = [
+        f"'{problem.name}' has {free} free and {fixed} fixed inputs; every value has a unit and lies in its physical range."
+    ]
+    if problem.dataset is not None:
+        rows = problem.conditions.n_rows
+        said.append(
+            f"{rows} rows of {problem.dataset.key}: {problem.observable}, noise {problem.spec.noise}."
+        )
+        if free > rows:
+            said.append(
+                f"There are more free parameters ({free}) than data ({rows}): the priors decide what remains open."
+            )
+    else:
+        said.append("It has no data: it serves 'predict' only.")
+    return tuple(said)
+
+
+def _priors(problem: Problem) -> tuple[str, ...]:
+    said = []
+    for parameter in problem.free:
+        prior = parameter.prior
+        if prior is None:
+            continue
+        low, high = prior.interval(0.9)
+        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+        line = f"{parameter.label}: {parameter.prior_text}; 90 % between {low:.3g} and {high:.3g}{unit}."
+        if not parameter.source:
+            line += " No source is given."
+        said.append(line)
+    return tuple(said)
+
+
+def _predictions(problem: Problem, draws: FloatArray) -> tuple[tuple[str, ...], NDArray[np.bool_]]:
+    """Sentences about finite predictions, and which of the draws have them."""
+    predicted = problem.predict(draws)
+    finite = np.all([np.isfinite(values).all(axis=-1) for values in predicted.values()], axis=0)
+    if not finite.any():
+        raise InputError(f"{problem.spec.path}: none of {len(draws)} prior draws gives a finite prediction")
+    if not problem.free:
+        return ("The prediction is finite at all conditions.",), finite
+    if finite.all():
+        said = [f"All of {len(draws)} prior draws give finite predictions."]
+    else:
+        first = draws[~finite][0]
+        where = ", ".join(f"{name} = {value:.4g}" for name, value in zip(problem.names, first, strict=True))
+        said = [
+            f"{(~finite).sum()} of {len(draws)} prior draws give no finite prediction (taken as impossible); first at {where}."
+        ]
+    if problem.observed is not None:
+        possible = np.isfinite(problem.log_likelihood(draws[finite]))
+        if not possible.all():
+            said.append(f"{(~possible).sum()} of them give the data no probability at all.")
+    return tuple(said), finite
+
+
+def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
+    entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in NOISE_PARAMETERS]
+    if not entering:
+        return None
+    centre = problem.prior_medians()
+
+    def full(theta: FloatArray) -> FloatArray:
+        vectors = np.tile(centre, (len(theta), 1))
+        vectors[:, entering] = theta
+        return vectors
+
+    typical = problem.predict(centre)[problem.observable]
+    logarithmic = bool((typical > 0).all() and (problem.predict(draws)[problem.observable] > 0).all())
+
+    def predict(theta: FloatArray) -> FloatArray:
+        predicted = problem.predict(full(theta))[problem.observable]
+        with np.errstate(all="ignore"):
+            return np.log(predicted) if logarithmic else predicted
+
+    def derived(theta: FloatArray) -> dict[str, FloatArray]:
+        # the quantity of each parameter vector; a block that the parameters leave alone comes once for all
+        found = problem.forward.derived(problem.inputs(full(theta)), problem.table)
+        shape = (len(theta), problem.conditions.n_rows)
+        return {name: np.array(np.broadcast_to(found[name], shape)) for name in problem.forward.blocks}
+
+    width = problem.noise_width(centre)
+    return identify(
+        [problem.names[i] for i in entering],
+        predict,
+        draws[:, entering],
+        width / typical if logarithmic and not problem.noise_is_logarithmic else width,
+        groups=_groups(problem),
+        derived=derived,
+    )
+
+
+def _groups(problem: Problem) -> dict[str, NDArray[np.intp]]:
+    groups: dict[str, NDArray[np.intp]] = {}
+    for values in problem.conditions.labels.values():
+        levels = list(dict.fromkeys(values))
+        if 2 <= len(levels) <= MOST_LEVELS:
+            groups |= {str(level): np.flatnonzero(values == level) for level in levels}
+    return groups
