@@ -130,7 +130,7 @@ def convert_array(
     >>> convert_array([0.5, 2.0], "mN", "N", "column normal_force")
     array([0.0005, 0.002 ])
     """
-    multiplier, divisor, offset = _explained_conversion(from_unit, to_unit, where, f"unit '{from_unit}'")
+    multiplier, divisor, offset = _explained_conversion(from_unit, to_unit, where)
     numbers = np.asarray(values, dtype=float)
     if offset != 0.0 and not difference:
         return np.asarray(numbers + offset)
@@ -138,13 +138,17 @@ def convert_array(
         return np.asarray(numbers * multiplier / divisor)
 
 
-def _explained_conversion(from_unit: str, to_unit: str, where: str, found: str) -> tuple[float, float, float]:
+def _explained_conversion(
+    from_unit: str, to_unit: str, where: str, found: str | None = None
+) -> tuple[float, float, float]:
+    """`_conversion`, with errors that say where; ``found`` is the text around the unit, if there is any."""
+    unit = f"unit {from_unit[:_LONGEST_UNIT]!r}"
     try:
         return _conversion(from_unit, to_unit)
     except LookupError:
-        problem = f"{found} is not in a unit that is known"
+        problem = f"{unit} is unknown" if found is None else f"{found} has an unknown unit"
     except ValueError:
-        problem = f"{found} has the wrong dimension"
+        problem = f"{unit if found is None else found} has the wrong dimension"
     raise InputError(f"{where}: {problem}; expected {describe_unit(to_unit)}")
 
 

@@ -133,7 +133,7 @@ def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
                 if b"\0" in raw:
                     raise InputError(
                         f"{path}, line {number}: found a zero byte (byte {raw.index(0) + 1} of the line); "
-                        "expected comma-separated text in UTF-8, not a binary file or spreadsheet"
+                        "expected comma-separated text in UTF-8, not UTF-16, not a binary file or spreadsheet"
                     )
                 if len(raw) == _LONGEST_LINE:
                     raise InputError(

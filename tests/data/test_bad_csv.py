@@ -23,7 +23,7 @@ CORPUS: dict[str, tuple[bytes | str, tuple[str, ...]]] = {
     ),
     "zero bytes": (
         HEADER.encode() + b"a,1\0,2\n",
-        ("line 2", "zero byte", "byte 4 of the line", "not a binary file"),
+        ("line 2", "zero byte", "byte 4 of the line", "not UTF-16, not a binary file"),
     ),
     "utf-16": ("ä".join(HEADER).encode("utf-16"), ("line 1", "zero byte")),
     "latin-1": (HEADER.encode() + "Jörg,1,0.5\n".encode("latin-1"), ("line 2", "byte 2", "0xf6", "UTF-8")),
@@ -65,7 +65,10 @@ CORPUS: dict[str, tuple[bytes | str, tuple[str, ...]]] = {
         "normal_force [Pa]\n1\n",
         ("line 1", "'normal_force'", "unit 'Pa' has the wrong dimension", "expected a force in N"),
     ),
-    "unknown unit": ("normal_force [quux]\n1\n", ("line 1", "unit 'quux'", "expected a force in N")),
+    "unknown unit": (
+        "normal_force [quux]\n1\n",
+        ("line 1", "unit 'quux' is unknown", "expected a force in N"),
+    ),
     "unit on a label": ("person [1],normal_force [N]\nA,1\n", ("line 1", "'person'", "expected no unit")),
     "labels only": ("person,liquid\nA,water\n", ("line 1", "no quantity", "friction_coefficient [1]")),
     "nan": (HEADER + "A,nan,0.5\n", ("line 2", "'normal_force'", "'nan'", "expected > 0 N")),

@@ -94,7 +94,7 @@ def test_every_source_and_grade_is_explained(name: str) -> None:
     known = {row["source"] for row in load_reference("sources").rows}
     table = load_reference(name)
     for row in table.rows:
-        assert row.get("source", "persson2013") in known
+        assert row.get("source", "PERSSON2013") in known
         if "grade" in table.columns:
             assert row["grade"] in table.provenance.grades
 
