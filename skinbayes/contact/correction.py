@@ -23,19 +23,19 @@ IndexArray: TypeAlias = NDArray[np.intp]
 AREA_CORRECTION = 0.42
 """γ of the Yang–Persson correction, dimensionless: the one place where its usual value is stated."""
 
-# Φ is tabulated over ln y from _FIRST to _LAST. Below, A = 1 to 1e-12 and Φ(y) = y; above, A² = 4/(πy) to
-# 2/(3y).
-_FIRST, _LAST, _CELLS = -3.25, 14.25, 280
 _CACHED = 16  # tables of this many values of γ are kept
-_STEP = (_LAST - _FIRST) / _CELLS
-_KNOTS = _FIRST + _STEP * np.arange(_CELLS + 1)
-_Y_FIRST, _Y_LAST = float(np.exp(_FIRST)), float(np.exp(_LAST))
-_POINTS, _POINT_WEIGHTS = gauss_unit(3)
-_CELL_Y = np.exp(_KNOTS[:-1, None] + _STEP * _POINTS)
-_CELL_AREA_SQUARED = np.square(erf(1 / np.sqrt(_CELL_Y)))
-_CELL_MEASURE = _STEP * _POINT_WEIGHTS * _CELL_Y
-_KNOT_AREA_SQUARED = np.square(erf(np.exp(-_KNOTS / 2)))
+
+# Knots in ln y. Below the first, A = 1 to 1e-12 and Φ(y) = y. In the middle Φ is integrated cell by cell. Beyond, where
+# A² = 4/(πy) to 2/(3y), Φ is elementary and the knots may thin out. Past the last one V_eff = γV to 1e-20.
+_STEP, _CELLS = 0.125, 140
+_MIDDLE = -3.25 + _STEP * np.arange(_CELLS + 1)
+_KNOTS = np.concatenate([_MIDDLE, _MIDDLE[-1] + _STEP * np.cumsum(1.06 ** np.arange(1, 53))])
 _KNOT_Y = np.exp(_KNOTS)
+_KNOT_AREA_SQUARED = np.square(erf(np.exp(-_KNOTS / 2)))
+_POINTS, _POINT_WEIGHTS = gauss_unit(3)
+_CELL_Y = np.exp(_MIDDLE[:-1] + _STEP * _POINTS[:, None])
+_CELL_AREA_SQUARED = np.square(erf(1 / np.sqrt(_CELL_Y)))
+_CELL_MEASURE = _STEP * _POINT_WEIGHTS[:, None] * _CELL_Y
 
 
 class _Table(NamedTuple):
@@ -47,12 +47,16 @@ class _Table(NamedTuple):
 
 def _table(gamma: FloatArray) -> _Table:
     """The table for each γ of shape ``(G,)``; row by row the same numbers as for one γ alone."""
-    g = gamma[:, None, None]
-    cells = (_CELL_MEASURE / (g + (1 - g) * _CELL_AREA_SQUARED)).sum(axis=-1)
-    phi = np.concatenate([np.full((gamma.size, 1), _Y_FIRST), _Y_FIRST + np.cumsum(cells, axis=-1)], axis=-1)
     g = gamma[:, None]
-    slope = phi * (g + (1 - g) * _KNOT_AREA_SQUARED) / _KNOT_Y
-    return _Table(np.log(phi), slope)
+    phi = np.empty((gamma.size, _KNOTS.size))
+    cells = sum(m / (g + (1 - g) * a) for m, a in zip(_CELL_MEASURE, _CELL_AREA_SQUARED, strict=True))
+    phi[:, 0] = _KNOT_Y[0]
+    phi[:, 1 : _CELLS + 1] = _KNOT_Y[0] + np.cumsum(cells, axis=-1)
+    # ∫ dy/(γ + b/y) = [γ(y − Y) − b ln((γy + b)/(γY + b))]/γ² with b = 4(1 − γ)/π
+    b, start = 4 / np.pi * (1 - g), _KNOT_Y[_CELLS]
+    rise = g * (_KNOT_Y[_CELLS + 1 :] - start)
+    phi[:, _CELLS + 1 :] = phi[:, [_CELLS]] + (rise - b * np.log1p(rise / (g * start + b))) / np.square(g)
+    return _Table(np.log(phi), phi * (g + (1 - g) * _KNOT_AREA_SQUARED) / _KNOT_Y)
 
 
 @lru_cache(maxsize=_CACHED)
@@ -112,54 +116,27 @@ def corrected_stress_variance(
 
 def _share(ratio: FloatArray, distinct: FloatArray, member: IndexArray) -> FloatArray:
     """V_eff/V for ``ratio`` = V/p0², shape ``(M,)``, where element i has the γ ``distinct[member[i]]``."""
-    if distinct.size <= _CACHED:
-        tables = [_single_table(value) for value in distinct.tolist()]
-        table = (
-            tables[0]
-            if len(tables) == 1
-            else _Table(*(np.concatenate(parts) for parts in zip(*tables, strict=True)))
-        )
-    else:
-        table = _table(distinct)
-    gamma = distinct[member]
     log_ratio = np.log(ratio)
     if distinct.size == 1:
-        cell = np.searchsorted(table.log_phi[0], log_ratio, side="right") - 1
+        log_phi, slope = (part[0] for part in _single_table(float(distinct[0])))
+        cell = _inner(np.searchsorted(log_phi, log_ratio, side="right") - 1)
+        left, right, left_slope, right_slope = log_phi[cell], log_phi[cell + 1], slope[cell], slope[cell + 1]
     else:
-        cell = np.count_nonzero(table.log_phi[member] <= log_ratio[:, None], axis=-1) - 1
-    cell = np.clip(cell, 0, _CELLS - 1)
+        log_phi, slope = _table(distinct)
+        cell = _inner(np.count_nonzero(log_phi[member] <= log_ratio[:, None], axis=-1) - 1)
+        left, right = log_phi[member, cell], log_phi[member, cell + 1]
+        left_slope, right_slope = slope[member, cell], slope[member, cell + 1]
     # cubic Hermite interpolation of ln y over ln Φ
-    left, right = table.log_phi[member, cell], table.log_phi[member, cell + 1]
     width = right - left
     w = (log_ratio - left) / width
-    curved = w * (1 - w) * width * ((1 - w) * table.slope[member, cell] - w * table.slope[member, cell + 1])
-    log_y = _FIRST + _STEP * (cell + w * w * (3 - 2 * w)) + curved
-    share = np.exp(log_y - log_ratio)
-    last = np.exp(table.log_phi[member, -1])
-    beyond = np.flatnonzero((ratio > last) & np.isfinite(ratio))
-    if beyond.size:
-        share[beyond] = _solve_beyond(ratio[beyond] - last[beyond], gamma[beyond]) / ratio[beyond]
-    share = np.where(ratio <= _Y_FIRST, 1.0, share)
-    share = np.where(np.isinf(ratio), gamma, share)
-    return np.where(gamma == 1, 1.0, share + 0.0 * gamma + 0.0 * np.where(np.isnan(ratio), np.nan, 0.0))
+    curved = w * (1 - w) * width * ((1 - w) * left_slope - w * right_slope)
+    knot = _KNOTS[cell]
+    log_y = knot + (_KNOTS[cell + 1] - knot) * (w * w * (3 - 2 * w)) + curved
+    gamma = distinct[member]
+    share = np.where(ratio <= _KNOT_Y[0], 1.0, np.exp(log_y - log_ratio))
+    share = np.where(ratio >= _KNOT_Y[-1] / gamma, gamma, share)
+    return np.where(gamma == 1, 1.0, share + 0.0 * gamma)
 
 
-def _solve_beyond(excess: FloatArray, gamma: FloatArray) -> FloatArray:
-    """y with Φ(y) = Φ(Y) + ``excess`` beyond the last knot Y, where A² = 4/(πy) makes Φ elementary.
-
-    ``Φ(y) − Φ(Y) = [γ(y − Y) − b ln((γy + b)/(γY + b))]/γ²`` with b = 4(1 − γ)/π is convex: Newton from a
-    lower bound. Each element stops by itself, so that its value does not depend on its neighbours.
-    """
-    b = 4 * (1 - gamma) / np.pi
-    y = np.maximum(_Y_LAST + gamma * excess, np.sqrt(_Y_LAST**2 + 2 * b * excess))
-    active = np.arange(y.size)
-    for _ in range(40):
-        g, b_active, now = gamma[active], b[active], y[active]
-        rise = g * (now - _Y_LAST)
-        phi = (rise - b_active * np.log1p(rise / (g * _Y_LAST + b_active))) / (g * g)
-        step = (excess[active] - phi) * (g + b_active / now)
-        y[active] = now + step
-        active = active[np.abs(step) > 1e-9 * now]
-        if not active.size:
-            break
-    return y
+def _inner(cell: IndexArray) -> IndexArray:
+    return np.clip(cell, 0, _KNOTS.size - 2)

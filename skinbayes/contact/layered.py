@@ -117,42 +117,40 @@ def reduced_modulus(young_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Float
 
 
 class _Contrast(NamedTuple):
-    """m and n of Eq. 4 with 1 − m and 1 − n, tiny for a stiff layer and not to be formed by subtraction."""
+    """What Eq. 4 needs of the materials: ``S = (c + mn g(1+e) + 4mxe)/(a + b g + mn g² − 4mx²e)``, g = 1 − e, e = exp(−2x).
 
-    m: FloatArray
-    n: FloatArray
-    one_minus_m: FloatArray
-    one_minus_n: FloatArray
+    Every term is formed without subtracting nearly equal numbers, which 1 − m, 1 − n and 1 − mn are for a stiff layer.
+    """
+
+    at_zero: FloatArray  # c = 1 − mn
+    ground: FloatArray  # a = (1 − m)(1 − n)
+    linear: FloatArray  # b = (1 − m)n + (1 − n)m
+    product: FloatArray  # mn
+    four_m: FloatArray  # 4m
 
 
 def _contrast(skin: LayeredSkin) -> _Contrast:
     nu0, nu1 = skin.poisson_ratio_layer, skin.poisson_ratio_bulk
-    possible = (
-        (skin.young_modulus_layer > 0)
-        & (skin.young_modulus_bulk > 0)
-        & (skin.layer_thickness > 0)
-        & (nu0 > -1)
-        & (nu0 <= 0.5)
-        & (nu1 > -1)
-        & (nu1 <= 0.5)
-    )
-    shear_ratio = skin.young_modulus_layer / skin.young_modulus_bulk * ((1 + nu1) / (1 + nu0))
-    shear_ratio = np.where(possible, shear_ratio, np.nan)
-    one_minus_m = 4 * (1 - nu0) / (shear_ratio + 3 - 4 * nu0)
-    one_minus_n = 4 * (1 - nu0) / (1 + shear_ratio * (3 - 4 * nu1))
-    return _Contrast(1 - one_minus_m, 1 - one_minus_n, one_minus_m, one_minus_n)
+    stiff, soft = skin.young_modulus_layer, skin.young_modulus_bulk
+    possible = (np.minimum(stiff, soft) > 0) & (skin.layer_thickness > 0)
+    possible = possible & (np.minimum(nu0, nu1) > -1) & (np.maximum(nu0, nu1) <= 0.5)
+    shear_ratio = np.where(possible, stiff / soft * ((1 + nu1) / (1 + nu0)), np.nan)
+    four = 4 - 4 * nu0
+    one_minus_m = four / (shear_ratio + (3 - 4 * nu0))
+    one_minus_n = four / (1 + shear_ratio * (3 - 4 * nu1))
+    m, n = 1 - one_minus_m, 1 - one_minus_n
+    linear = one_minus_m * n + one_minus_n * m
+    return _Contrast(one_minus_m + m * one_minus_n, one_minus_m * one_minus_n, linear, m * n, 4 * m)
 
 
 def inverse_response(skin: LayeredSkin, wavevector: FloatArray, axes: int) -> FloatArray:
     """1/S(q) with ``axes`` new last axes for the wavevector, see `surface_response`; silences no warnings."""
-    # S = N/D of Eq. 4, every 1 − e^(−2qd), 1 − m, 1 − n kept as a small number of its own
-    m, n, one_minus_m, one_minus_n = (with_axes(x, axes) for x in _contrast(skin))
+    at_zero, ground, linear, product, four_m = (with_axes(x, axes) for x in _contrast(skin))
     x = wavevector * with_axes(skin.layer_thickness, axes)
-    decayed = -np.expm1(-2 * x)
-    decay = 1 - decayed
-    mx = 4 * m * x * decay
-    numerator = one_minus_m + m * one_minus_n + m * n * (decayed * (1 + decay)) + mx
-    denominator = (one_minus_m + m * decayed) * (one_minus_n + n * decayed) - mx * x
+    rise = np.expm1(-2 * x)  # −g
+    bending = four_m * (x * (1 + rise))
+    numerator = at_zero - product * (rise * (2 + rise)) + bending
+    denominator = ground + rise * (product * rise - linear) - bending * x
     return np.asarray(denominator / numerator)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.contact.layered import SATURATION, LayeredSkin, inverse_response, reduced_modulus
+from skinbayes.contact.layered import SATURATION, LayeredSkin, inverse_response
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum
 
@@ -54,6 +54,6 @@ def stress_variance(
         nodes, weights, remainder = spectrum.slope_quadrature(saturation, upper)
         # sums must run along a contiguous last axis, so that a batch and its rows agree to the last bit
         terms = np.ascontiguousarray(weights * np.square(inverse_response(skin, nodes, axes + 1)))
-        layer = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), axes)
+        layer = with_axes(skin.young_modulus_layer / (1 - np.square(skin.poisson_ratio_layer)), axes)
         total = np.pi * np.square(layer) * (terms.sum(axis=-1) + remainder)
     return np.asarray(total if wavevector is None or np.ndim(wavevector) else total[..., 0])[()]

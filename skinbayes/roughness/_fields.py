@@ -13,10 +13,8 @@ Floats: TypeAlias = "float | FloatArray"
 
 
 def as_field(value: ArrayLike) -> FloatArray:
-    """A private, read-only copy of ``value`` as 64-bit floats; a scalar becomes a NumPy scalar."""
-    array = np.array(value, dtype=np.float64)
-    array.flags.writeable = False
-    return array[()]
+    """``value`` as 64-bit floats; a scalar becomes a NumPy scalar."""
+    return np.asarray(value, dtype=np.float64)[()]
 
 
 def with_axes(value: Floats, count: int) -> FloatArray:

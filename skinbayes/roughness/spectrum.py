@@ -69,10 +69,9 @@ class PowerSpectrum(Protocol):
         ...
 
 
-_PLATEAU_NODES, _PLATEAU_WEIGHTS = gauss_unit(16)
-_LOWER_NODES, _LOWER_WEIGHTS = gauss_unit(24)
-_UPPER_NODES, _UPPER_WEIGHTS = gauss_unit(16)
-_SPLIT = 0.05  # where the panel that ends at the saturation wavevector begins, in units of it
+_PLATEAU_NODES, _PLATEAU_WEIGHTS = gauss_unit(12)
+_FRACTAL_NODES, _FRACTAL_WEIGHTS = gauss_unit(36)
+_SPLIT = _PLATEAU_NODES.size
 
 
 def _power_integral(length: FloatArray, exponent: Floats) -> FloatArray:
@@ -128,8 +127,9 @@ class SelfAffineSpectrum:
             mean_square = self._unit_moment(1.0)
             possible = (
                 (height > 0) & (hurst > 0) & (hurst <= 1) & (q0 > 0) & (q_r >= q0) & (q1 >= q_r) & (q1 > q0)
-            ) & (np.isfinite(height) & np.isfinite(q1))
-            return np.where(possible, np.square(height) / (2 * np.pi * mean_square), np.nan)[()]
+            )
+            possible = possible & (height * q1 < np.inf)
+            return np.where(possible, np.square(height) / (2 * np.pi * mean_square), np.nan)
 
     def _unit_moment(self, exponent: float) -> FloatArray:
         """``∫ q^exponent C dq / C0`` in closed form."""
@@ -151,15 +151,12 @@ class SelfAffineSpectrum:
         """
         q = np.asarray(wavevector, dtype=np.float64)
         axes = min(q.ndim, 1)
-        q0, q_r, q1 = (
-            with_axes(x, axes) for x in (self.wavevector_min, self.wavevector_rolloff, self.wavevector_max)
-        )
+        q0, q_r, q1 = self._band(axes)
+        plateau = with_axes(self.plateau_power, axes)
         with np.errstate(all="ignore"):
             decay = np.maximum(q / q_r, 1.0) ** (-2 - 2 * with_axes(self.hurst_exponent, axes))
-            inside = (q >= q0) & (q <= q1)
-            return np.where(
-                inside, with_axes(self.plateau_power, axes) * decay, 0.0 * with_axes(self.plateau_power, axes)
-            )[()]
+            inside = np.where(np.isnan(q), np.nan, (q >= q0) & (q <= q1))
+            return np.asarray(plateau * decay * inside)[()]
 
     def partial_moment(self, exponent: float) -> FloatArray:
         """``∫ q^exponent C(q) dq`` over the band in closed form, batch shape, m^(3 − exponent)."""
@@ -169,8 +166,7 @@ class SelfAffineSpectrum:
     def slope_quadrature(self, saturation: Floats, wavevector: FloatArray | None = None) -> SlopeQuadrature:
         """A rule for ``∫ q³ C f dq``, see `SlopeQuadrature`.
 
-        Gauss–Legendre in ln q on the plateau, on the fractal part up to a twentieth of ``saturation``, and
-        from there to ``saturation``; the closed form above it.
+        Gauss–Legendre in ln q on the plateau and on the fractal part up to ``saturation``, the closed form above.
 
         Parameters
         ----------
@@ -182,43 +178,42 @@ class SelfAffineSpectrum:
         rule : shapes ``(..., n)`` and ``(...)``, or ``(..., K, n)`` and ``(..., K)``
         """
         axes = 0 if wavevector is None else 1
-        q0, q_r, q1 = (
-            with_axes(x, axes) for x in (self.wavevector_min, self.wavevector_rolloff, self.wavevector_max)
-        )
+        q0, q_r, q1 = self._band(axes)
         slope = 2 - 2 * with_axes(self.hurst_exponent, axes)
         plateau_power, saturation = with_axes(self.plateau_power, axes), with_axes(saturation, axes)
         with np.errstate(all="ignore"):
             top = q1 if wavevector is None else np.minimum(np.maximum(wavevector, q0), q1)
             end = np.maximum(np.minimum(top, saturation), q0)
             knee = np.minimum(q_r, end)
-            split = np.minimum(np.maximum(_SPLIT * saturation, knee), end)
-            scale = plateau_power * q_r**4
-            # plateau: ∫ q³ C f dq = C0 ∫ q⁴ f dln q
-            length = np.log(knee / q0)
-            plateau = _outer(q0, np.exp(_outer(length, _PLATEAU_NODES)))
-            nodes, weights = (
-                [plateau],
-                [_outer(plateau_power * length, _PLATEAU_WEIGHTS) * np.square(np.square(plateau))],
-            )
-            # fractal part: C0 q_r⁴ ∫ (q/q_r)^(2−2H) f dln q
-            panels = ((knee, split, _LOWER_NODES, _LOWER_WEIGHTS), (split, end, _UPPER_NODES, _UPPER_WEIGHTS))
-            for left, right, points, point_weights in panels:
-                length = np.log(right / left)
-                log_ratio = np.log(left / q_r)[..., None] + _outer(length, points)
-                nodes.append(_outer(q_r, np.exp(log_ratio)))
-                weights.append(_outer(scale * length, point_weights) * np.exp(slope[..., None] * log_ratio))
-            # f = 1 from here on
-            mid = np.maximum(np.minimum(q_r, top), end)
-            remainder = plateau_power * end**4 * _power_integral(np.log(mid / end), 4.0)
-            remainder = remainder + scale * (mid / q_r) ** slope * _power_integral(np.log(top / mid), slope)
-        return SlopeQuadrature(_joined(nodes), _joined(weights), np.asarray(remainder))
+            lengths = np.log(knee / q0), np.log(end / knee)
+            starts = np.log(q0 / q_r), np.log(knee / q_r)
+            # ln(q/q_r) at the nodes: those of the plateau, then those of the fractal part
+            log_ratio = np.empty((*np.shape(knee), _SPLIT + _FRACTAL_NODES.size))
+            parts = log_ratio[..., :_SPLIT], log_ratio[..., _SPLIT:]
+            for part, start, length, points in zip(
+                parts, starts, lengths, (_PLATEAU_NODES, _FRACTAL_NODES), strict=True
+            ):
+                np.multiply(length[..., None], points, out=part)
+                part += start[..., None]
+            # ∫ q³ C dq = C0 q_r⁴ ∫ (q/q_r)^κ dln q with κ = 4 on the plateau and 2 − 2H above it
+            scale = plateau_power * np.square(np.square(q_r))
+            weights = np.empty((*np.broadcast_shapes(knee.shape, scale.shape), log_ratio.shape[-1]))
+            np.multiply(parts[0], 4.0, out=weights[..., :_SPLIT])
+            np.multiply(parts[1], slope[..., None], out=weights[..., _SPLIT:])
+            np.exp(weights, out=weights)
+            weights[..., :_SPLIT] *= (scale * lengths[0])[..., None] * _PLATEAU_WEIGHTS
+            weights[..., _SPLIT:] *= (scale * lengths[1])[..., None] * _FRACTAL_WEIGHTS
+            nodes = np.exp(log_ratio)
+            nodes *= q_r[..., None]
+            # f = 1 from ``end`` on
+            turn = np.maximum(np.minimum(q_r, top), end)
+            plateau = np.square(np.square(end / q_r)) * _power_integral(np.log(turn / end), 4.0)
+            fractal = (turn / q_r) ** slope * _power_integral(np.log(top / turn), slope)
+            remainder = scale * (plateau + fractal)
+        return SlopeQuadrature(nodes, weights, remainder)
 
-
-def _outer(batch: FloatArray, points: FloatArray) -> FloatArray:
-    return np.asarray(batch)[..., None] * points
-
-
-def _joined(parts: list[FloatArray]) -> FloatArray:
-    """The panels side by side on the last axis, with a common leading shape."""
-    leading = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
-    return np.concatenate([np.broadcast_to(part, leading + part.shape[-1:]) for part in parts], axis=-1)
+    def _band(self, axes: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """q0, q_r, q1 with ``axes`` new last axes."""
+        ends = self.wavevector_min, self.wavevector_rolloff, self.wavevector_max
+        q0, q_r, q1 = (with_axes(end, axes) for end in ends)
+        return q0, q_r, q1

@@ -52,8 +52,10 @@ class TabulatedSpectrum:
     scale: Floats
 
     def __init__(self, wavevector: ArrayLike, power: ArrayLike, scale: ArrayLike = 1.0) -> None:
-        object.__setattr__(self, "wavevector", as_field(wavevector))
-        object.__setattr__(self, "node_power", as_field(power))
+        for name, values in (("wavevector", wavevector), ("node_power", power)):
+            own = np.array(values, dtype=np.float64)  # quadrature weights are kept, so nobody may write here
+            own.flags.writeable = False
+            object.__setattr__(self, name, own)
         object.__setattr__(self, "scale", as_field(scale))
         check_table(self.wavevector, self.node_power, "power", "m^4")
 
