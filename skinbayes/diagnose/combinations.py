@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations, islice
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 
@@ -24,6 +26,9 @@ PARALLEL = 0.999
 """Cosine above which a block of parameters acts like a derived quantity."""
 
 MAXIMUM_CANDIDATES = 3000
+"""Bound on the sets of parameters tried in the search for simple vectors."""
+
+BoolArray: TypeAlias = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -131,20 +136,21 @@ def nice(values: FloatArray) -> float | None:
     return None
 
 
-def normalised(exponents: FloatArray, significant: FloatArray) -> FloatArray:
+def normalised(exponents: FloatArray, significant: BoolArray, powers: BoolArray) -> FloatArray:
     """Scale exponents ``(B, D)`` so that they read well: one of them ±1 and most of the others simple fractions.
 
-    ``significant`` (shape ``(D,)``, bool) tells which exponents will be written. If every exponent nearly vanishes
-    somewhere, the input is returned with its largest entry scaled to one.
+    ``significant`` (shape ``(D,)``) tells which exponents will be written and ``powers`` which of them are powers, not
+    slopes. If every exponent nearly vanishes somewhere, the input is returned with its largest entry scaled to one.
     """
-    shown = np.flatnonzero(significant)
+    shown = np.flatnonzero(significant & powers if (significant & powers).any() else significant)
     best, best_cost = (
         exponents / np.maximum(np.abs(exponents[:, shown]).max(axis=1, keepdims=True), 1e-300),
         np.inf,
     )
     for pivot in shown:
         size = np.abs(exponents[:, pivot])
-        if np.quantile(size / np.abs(exponents[:, shown]).max(axis=1), 0.05) < 0.02:
+        share = size / np.maximum(np.abs(exponents[:, shown]).max(axis=1), 1e-300)
+        if np.quantile(share, 0.05) < 0.02 or share.min() < 1e-3:
             continue
         candidate = exponents / exponents[:, pivot : pivot + 1]
         cost = 0.0
@@ -186,7 +192,8 @@ def with_derived(
         cosine = np.abs(inner) / np.maximum(size, 1e-300)
         if np.median(cosine) > PARALLEL and np.quantile(cosine, 0.1) > 1.0 - 10.0 * (1.0 - PARALLEL):
             power = inner / (gradient[:, block] ** 2).sum(axis=1)
-            options.append((-int(block.sum()), name, block, power, gradient))
+            options.append((int(block.sum()), name, block, power, gradient))
+    # small blocks first: quantities next to the parameters say more than those next to the predictions
     for _, name, block, power, gradient in sorted(options, key=lambda option: option[0]):
         if not (block & taken).any():
             rest -= power[:, None] * gradient

@@ -15,7 +15,7 @@ from skinbayes.diagnose.combinations import (
     typical,
     with_derived,
 )
-from skinbayes.diagnose.findings import Combination, Freedom, Group
+from skinbayes.diagnose.findings import Combination, Equivalent, Freedom, Group
 from skinbayes.diagnose.sensitivities import IntArray, Sensitivities
 from skinbayes.diagnose.words import change, product
 
@@ -64,7 +64,7 @@ def _combination(
     effects = np.quantile(np.abs(rest), 0.9, axis=0)  # the largest entry of vector is one
     strong = np.concatenate([effects >= WEAK, np.ones(len(powers), dtype=bool)])
     exponents = np.column_stack([rest / found.prior_spread, *powers.values()])
-    exponents = normalised(exponents, strong)
+    exponents = normalised(exponents, strong, np.array(logs))
     low, middle, high = np.quantile(exponents, [0.05, 0.5, 0.95], axis=0)
     shown = {names[i]: i for i in np.flatnonzero(strong)}
     fractions = {name: nice(exponents[:, i]) for name, i in shown.items()}
@@ -89,6 +89,22 @@ def _combination(
 
 def _either(fraction: float | None, value: float) -> float:
     return float(value) if fraction is None else fraction
+
+
+def equivalents(found: Sensitivities, groups: tuple[Group, ...]) -> tuple[Equivalent, ...]:
+    """Derived quantities that are a power of one parameter of a named combination, the same for all rows."""
+    mentioned = {name for group in groups for c in group.combinations for name in c.exponents}
+    result = []
+    for name, slopes in found.derived.items():
+        flat = slopes if slopes.ndim == 3 else slopes[:, None, :]
+        strong = typical((flat * found.prior_spread).reshape(-1, flat.shape[-1])) >= 0.01
+        if strong.sum() != 1:
+            continue
+        column = int(np.flatnonzero(strong)[0])
+        power = nice(flat[:, :, column].ravel())
+        if power is not None and found.logarithmic[column] and found.names[column] in mentioned:
+            result.append(Equivalent(name, found.names[column], power))
+    return tuple(result)
 
 
 def freedoms(found: Sensitivities, scaled: FloatArray, columns: IntArray) -> tuple[Freedom, ...]:

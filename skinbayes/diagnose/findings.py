@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from skinbayes.diagnose.words import listed, percent, rows_text
+from skinbayes.diagnose.words import listed, percent, product, rows_text
 
 
 @dataclass(frozen=True)
@@ -120,6 +120,26 @@ class Freedom:
 
 
 @dataclass(frozen=True)
+class Equivalent:
+    """A derived quantity that depends on a single free parameter, as a power of it.
+
+    Attributes
+    ----------
+    derived, parameter : their names
+    power : derived ∝ parameter^power
+    """
+
+    derived: str
+    parameter: str
+    power: float
+
+    def sentence(self) -> str:
+        """The relation in words."""
+        relation = product({self.parameter: (self.power, self.power, self.power, self.power)})
+        return f"Of all free parameters only {self.parameter} moves {self.derived}: it is proportional to {relation}."
+
+
+@dataclass(frozen=True)
 class Identifiability:
     """What data can tell about parameters, from the linearised problem at many points of the prior.
 
@@ -132,6 +152,7 @@ class Identifiability:
     only_prior : parameters that all rows together say nothing about
     absent : those of them that enter no prediction at all
     spread_ratios : posterior over prior standard deviation of each parameter by itself
+    equivalents : derived quantities that follow a single parameter of the combinations above
     """
 
     names: tuple[str, ...]
@@ -142,6 +163,7 @@ class Identifiability:
     only_prior: tuple[str, ...]
     absent: tuple[str, ...]
     spread_ratios: dict[str, float]
+    equivalents: tuple[Equivalent, ...] = ()
 
     @property
     def joint(self) -> Group:
@@ -163,11 +185,13 @@ class Identifiability:
                 f"Together the data inform {count} of {total} independent directions of the parameters; "
                 f"along the other {total - count} the posterior will hardly differ from the prior."
             )
+        lines += [equivalent.sentence() for equivalent in self.equivalents]
         lines += [freedom.sentence() for freedom in self.freedoms]
         present = [name for name in self.only_prior if name not in self.absent]
         if present:
+            whose = "its" if len(present) == 1 else "their"
             lines.append(
-                f"Only the prior speaks about {listed(present)}: its effect is below the noise of the data."
+                f"Only the prior speaks about {listed(present)}: {whose} effect is below the noise of the data."
             )
         if self.absent:
             verb = "enters" if len(self.absent) == 1 else "enter"

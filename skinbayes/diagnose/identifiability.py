@@ -18,7 +18,7 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.diagnose.combinations import decompose
-from skinbayes.diagnose.directions import INFORMED, freedoms, group_finding, spread_ratios
+from skinbayes.diagnose.directions import INFORMED, equivalents, freedoms, group_finding, spread_ratios
 from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.sensitivities import Derived, Predict, sensitivities
 from skinbayes.errors import InputError
@@ -86,11 +86,13 @@ def identify(
     scaled = found.scaled(noise, everything)
     effect = np.quantile(np.linalg.norm(scaled, axis=1), 0.9, axis=0)
     mute = effect < INFORMED
+    findings = tuple(group_finding(found, label, noise, index) for label, index in parts.items())
     return Identifiability(
         names=names,
         points=len(scaled),
         failed_points=found.failed,
-        groups=tuple(group_finding(found, label, noise, index) for label, index in parts.items()),
+        groups=findings,
+        equivalents=equivalents(found, findings),
         freedoms=freedoms(found, scaled, np.flatnonzero(~mute)),
         only_prior=tuple(name for name, is_mute in zip(names, mute, strict=True) if is_mute),
         absent=tuple(name for name, size in zip(names, effect, strict=True) if size < 1e-9),

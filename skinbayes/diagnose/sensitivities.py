@@ -18,7 +18,7 @@ Predict = Callable[[FloatArray], FloatArray]
 """``(B, D)`` parameters to ``(B, N)`` predictions, on the scale on which the noise is given."""
 
 Derived = Callable[[FloatArray], Mapping[str, FloatArray]]
-"""``(B, D)`` parameters to named quantities, each ``(B,)`` or ``(B, N)``."""
+"""``(B, D)`` parameters to named quantities, each ``(B,)``, ``(B, 1)`` or ``(B, N)``."""
 
 STEP = 0.01
 """Half-width of the central difference, in prior standard deviations."""
@@ -34,7 +34,7 @@ class Sensitivities:
     logarithmic : for each, True if the coordinate is ln
     prior_spread : standard deviation of each coordinate under the prior, shape ``(D,)``
     slopes : derivative of the predictions, shape ``(B, N, D)``
-    derived : derivative of ln of each derived quantity, shape ``(B, D)`` or ``(B, N, D)``
+    derived : derivative of ln of each derived quantity that is positive and moves, ``(B, D)``, ``(B, 1, D)`` or ``(B, N, D)``
     failed : number of points that were left out because a prediction about them was not finite
     """
 
@@ -51,11 +51,12 @@ class Sensitivities:
 
     def derived_for(self, rows: IntArray) -> dict[str, FloatArray]:
         """Slopes of ln of the derived quantities in prior standard deviations, mean over ``rows``; ``(B, D)``."""
-        means = {
-            name: slopes if slopes.ndim == 2 else slopes[:, rows, :].mean(axis=1)
-            for name, slopes in self.derived.items()
-        }
-        return {name: slopes * self.prior_spread for name, slopes in means.items()}
+        means = {}
+        for name, slopes in self.derived.items():
+            if slopes.ndim == 3:  # a quantity that is the same for all rows may come as (B, 1)
+                slopes = slopes[:, rows if slopes.shape[1] > 1 else slice(None), :].mean(axis=1)
+            means[name] = slopes * self.prior_spread
+        return means
 
 
 def sensitivities(
@@ -119,9 +120,14 @@ def sensitivities(
         logarithmic,
         np.asarray(prior_spread, dtype=float),
         stacked[finite],
-        {name: value for name, value in kept.items() if np.isfinite(value).all()},
+        {name: value for name, value in kept.items() if _moves(value * prior_spread)},
         int((~finite).sum()),
     )
+
+
+def _moves(effect: FloatArray) -> bool:
+    # rounding errors of a constant are no dependence
+    return bool(np.isfinite(effect).all() and np.abs(effect).max() > 1e-6)
 
 
 def _difference(both: FloatArray, step: float) -> FloatArray:
