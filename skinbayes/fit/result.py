@@ -66,14 +66,16 @@ class Fit:
         return np.stack([self.draws(label, group) for label in self.names], axis=-1)
 
     def derived_labels(self) -> tuple[str, ...]:
-        """Labels of the derived quantities that vary, one for each row where they differ by row."""
+        """Labels of the derived quantities that the data leave uncertain, one for each row where they differ by row."""
         labels: list[str] = []
         for name, variable in self.groups["posterior"].data_vars.items():
             if variable.attrs.get("kind") != "derived":
                 continue
             extra = [dimension for dimension in variable.dims if dimension not in ("chain", "draw")]
             levels = [f"[{level}]" for level in variable[extra[0]].values] if extra else [""]
-            labels += [f"{name}{level}" for level in levels]
+            labels += [
+                label for label in (f"{name}{level}" for level in levels) if np.ptp(self.draws(label)) > 0
+            ]
         return tuple(labels)
 
     def summary(self, derived: bool = False) -> pandas.DataFrame:
