@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from skinbayes.sampling.advance import Block, EnsembleState, advance
+from skinbayes.arrays import FloatArray
+from skinbayes.sampling.advance import Block
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, default_moves
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
+from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.target import Target
+from skinbayes.sampling.workers import advancing
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is, told after every block.
+    """How far a run is, told when it begins (or is taken up) and after every block.
 
     Attributes
     ----------
@@ -32,69 +36,115 @@ class Progress:
     report: StoppingReport | None
 
 
+class SamplingInterrupted(KeyboardInterrupt):
+    """The user interrupted a run; whole blocks made before are kept.
+
+    Attributes
+    ----------
+    chains : the steps so far, None if there was no whole block
+    """
+
+    def __init__(self, chains: Chains | None) -> None:
+        steps = 0 if chains is None else chains.steps
+        super().__init__(f"interrupted after {steps} steps")
+        self.chains = chains
+
+
 def run_ensembles(
     target: Target,
     options: SamplerOptions,
+    store: SampleStore | None = None,
     progress: Callable[[Progress], None] | None = None,
     moves: MoveFactory = default_moves,
 ) -> Chains:
     """Sample a target until the stopping rule is met or ``max_steps`` are made.
 
+    The draws depend on the target, ``options.seed``, the numbers of ensembles and walkers and the moves alone. They are
+    the same to the last bit with any number of cores, vectorised or not (if the target treats rows alike), and
+    whether or not the run was interrupted and resumed; where it stops depends on the number of steps alone.
+
     Parameters
     ----------
     target : the density
-    options : seed, sizes, when to stop
-    progress : called after every block of steps
+    options : seed, sizes, when to stop, how to compute
+    store : where steps are kept; a store that resumes gives the steps it holds
+    progress : called at the beginning and after every block of steps
     moves : builds the proposals
 
     Returns
     -------
     all steps and the verdict
+
+    Raises
+    ------
+    SamplingInterrupted
+        On Ctrl-C, with the steps of whole blocks so far.
+    InputError
+        If starts are impossible, or the store cannot be used (see :meth:`SampleStore.open`).
     """
-    starts = initial_states(target, options)
-    run = _Run(target, options, starts)
+    rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
-    while True:
-        if run.steps and (is_check(run.steps, options.block_steps) or run.steps >= last):
-            report = judge(run.positions(), target.names, options)
-        if progress is not None and run.steps:
-            progress(Progress(run.steps, last, report))
-        if report is not None and (report.converged or run.steps >= last):
-            return run.chains(report)
-        run.append(
-            [advance(target, state, options.block_steps, options.vectorize, moves) for state in run.states]
-        )
+    states = [block.end for block in rounds[-1]] if rounds else initial_states(target, options)
+    try:
+        with advancing(target, options, moves) as advance_all:
+            while True:
+                steps = len(rounds) * options.block_steps
+                if steps and (is_check(steps, options.block_steps) or steps >= last):
+                    report = judge(_joined(rounds, "positions"), target.names, options)
+                if progress is not None:
+                    progress(Progress(steps, last, report))
+                if report is not None and (report.converged or steps >= last):
+                    return _chains(target, options, rounds, report)
+                blocks = advance_all(states)
+                if store is not None:
+                    store.append(blocks)
+                rounds.append(blocks)
+                states = [block.end for block in blocks]
+    except KeyboardInterrupt:
+        if not rounds:
+            raise SamplingInterrupted(None) from None
+        report = judge(_joined(rounds, "positions"), target.names, options)
+        raise SamplingInterrupted(_chains(target, options, rounds, report)) from None
 
 
-@dataclass
-class _Run:
-    target: Target
-    options: SamplerOptions
-    states: list[EnsembleState]
-    rounds: list[list[Block]] = field(default_factory=list)
+def draw_identity(
+    target: Target, options: SamplerOptions, moves: MoveFactory = default_moves
+) -> dict[str, Any]:
+    """Everything the draws depend on; a stored run can only be continued with the same.
 
-    @property
-    def steps(self) -> int:
-        return len(self.rounds) * self.options.block_steps
+    Parameters
+    ----------
+    target, options, moves : as in :func:`run_ensembles`
 
-    def append(self, blocks: list[Block]) -> None:
-        self.rounds.append(blocks)
-        self.states = [block.end for block in blocks]
+    Returns
+    -------
+    values that can be written as JSON, under names that make sense in a message
+    """
+    return {
+        "model or data (fingerprint)": target.fingerprint,
+        "coordinates": list(target.names),
+        "sampler option seed": options.seed,
+        "sampler option ensembles": options.ensembles,
+        "sampler option walkers": options.walkers_for(len(target.names)),
+        "sampler option block_steps": options.block_steps,
+        "moves": f"{moves.__module__}.{moves.__qualname__}",
+    }
 
-    def positions(self) -> np.ndarray:
-        return np.concatenate(
-            [np.stack([block.positions for block in blocks]) for blocks in self.rounds], axis=1
-        )
 
-    def chains(self, report: StoppingReport) -> Chains:
-        blocks = [block for blocks in self.rounds for block in blocks]
-        starts = self.options.ensembles * len(self.states[0].log_density)
-        return Chains(
-            names=self.target.names,
-            positions=self.positions(),
-            log_density=np.concatenate([np.stack([b.log_density for b in bs]) for bs in self.rounds], axis=1),
-            report=report,
-            evaluations=starts + sum(block.evaluations for block in blocks),
-            invalid=sum(block.invalid for block in blocks),
-        )
+def _joined(rounds: list[list[Block]], name: str) -> FloatArray:
+    return np.concatenate([np.stack([getattr(block, name) for block in blocks]) for blocks in rounds], axis=1)
+
+
+def _chains(
+    target: Target, options: SamplerOptions, rounds: list[list[Block]], report: StoppingReport
+) -> Chains:
+    starts = options.ensembles * options.walkers_for(len(target.names))
+    return Chains(
+        names=target.names,
+        positions=_joined(rounds, "positions"),
+        log_density=_joined(rounds, "log_density"),
+        report=report,
+        evaluations=starts + sum(block.evaluations for blocks in rounds for block in blocks),
+        invalid=sum(block.invalid for blocks in rounds for block in blocks),
+    )

@@ -39,8 +39,9 @@ def initial_states(target: Target, options: SamplerOptions) -> list[EnsembleStat
         positions = np.array(target.starts(np.random.default_rng(for_starts), walkers), dtype=float)
         log_density = Density(target, options.vectorize)(positions)
         _check(target.names, index, positions, log_density, walkers)
-        generator = np.random.RandomState(np.random.MT19937(for_steps))  # noqa: NPY002 - emcee takes no Generator
-        states.append(EnsembleState(positions, log_density, generator.get_state()))
+        # emcee draws from a RandomState; a Generator would be ignored.
+        generator = np.random.RandomState(np.random.MT19937(for_steps))
+        states.append(EnsembleState(positions, log_density, tuple(generator.get_state(legacy=True))))
     return states
 
 

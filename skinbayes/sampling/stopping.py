@@ -20,7 +20,10 @@ TAU_CHANGE = 0.25
 """Largest acceptable growth of an autocorrelation time when correlations are summed to half of the kept steps."""
 
 JUDGED_STEPS = 256
-"""Longer chains are thinned to between half of this and this many steps before they are judged."""
+"""Longer chains are thinned to between half of this and this many steps before tau is estimated."""
+
+FEWER_STEPS = 64
+"""The same for R-hat between ensembles and for the burn-in, which need no resolution in time."""
 
 TAIL_SCORE = float(ndtri(0.05))
 """Normal score of the 5 % quantile."""
@@ -130,7 +133,7 @@ def _burn_in(positions: FloatArray) -> int:
     """Steps to discard: ten autocorrelation times of the second half or a fifth, but never more than half."""
     ensembles, steps, walkers, dimension = positions.shape
     half = steps // 2
-    stride = max(1, ceil(half / JUDGED_STEPS))
+    stride = max(1, half // FEWER_STEPS)
     late = positions[:, half::stride].transpose(3, 0, 2, 1).reshape(dimension, ensembles * walkers, -1)
     tau = stride * max(autocorrelation_time(rank_normalise(series))[0] for series in late)
     return half if not 10 * tau < half else max(ceil(10 * tau), ceil(steps / 5))
@@ -144,7 +147,8 @@ def _numbers(values: FloatArray) -> tuple[float, float, float, float, float]:
     tau, tau_far = autocorrelation_time(series)
     tails = [(series <= TAIL_SCORE).astype(float), (series >= -TAIL_SCORE).astype(float)]
     tail_tau = max(autocorrelation_time(tail)[0] for tail in tails)
-    return tau, tau_far, tail_tau, rank_r_hat(values.reshape(ensembles, -1)), r_hat(series)
+    fewer = values[:, :: max(1, steps // FEWER_STEPS)].reshape(ensembles, -1)
+    return tau, tau_far, tail_tau, rank_r_hat(fewer), r_hat(series)
 
 
 def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) -> Iterator[str]:
