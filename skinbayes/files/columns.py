@@ -47,6 +47,8 @@ def read_quantity(
     written = np.array([_number(cell) for cell in cells])
     where = f"{table.path}, line {table.header_line}, column '{table.header[position].strip()}'"
     values = convert_array(written, unit, quantity.unit, where, difference=difference)
+    if quantity.admits(values.min()) and quantity.admits(values.max()):  # the range has no gaps; nan fails
+        return values
     for row, value in enumerate(values.tolist()):
         if not quantity.admits(value):
             found = _found(cells[row], unit, value, quantity)

@@ -108,3 +108,9 @@ def test_fingerprint_sees_every_part(data: Dataset, tmp_path: Path) -> None:
         path.write_text(TEXT.replace(old, new))
         seen.add(load_dataset(path).fingerprint)
     assert len(seen) == 5
+
+
+def test_shipped_data_keep_their_provenance_when_pickled() -> None:
+    data = load_dataset("fehlberg2025-finger-stribeck").select({"liquid": ["water"]})
+    again = pickle.loads(pickle.dumps(data))
+    assert again.provenance == data.provenance and again.fingerprint == data.fingerprint
