@@ -20,7 +20,7 @@ __all__ = ["Dataset", "Fit", "InputError", "Problem", "__version__", "compare", 
            "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
-    from skinbayes.compare import compare
+    from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
@@ -31,7 +31,7 @@ _HOME = {
     "Fit": "skinbayes.fit",
     "InputError": "skinbayes.errors",
     "Problem": "skinbayes.problem",
-    "compare": "skinbayes.compare",
+    "compare": "skinbayes.comparison",
     "load_dataset": "skinbayes.files.dataset",
     "load_fit": "skinbayes.fit",
     "load_problem": "skinbayes.problem",

@@ -12,7 +12,7 @@ from skinbayes.cli.output import json_option, print_json, print_sentences, print
 @json_option
 def compare(runs: tuple[str, ...], as_json: bool) -> None:
     """Compare models by leave-one-out cross-validation (PSIS-LOO); runs on different data are refused."""
-    from skinbayes.compare import compare as compare_fits
+    from skinbayes.comparison import compare as compare_fits
     from skinbayes.fit import load_fit
 
     result = compare_fits([load_fit(run) for run in runs])

@@ -135,12 +135,12 @@ def _print(result: Fit, directory: Path, page: Path | None) -> None:
         if count > MOST_ROWS
     }
     rows = []
-    for label, row in everything.iterrows():
+    for label, row in zip(everything.index.astype(str), everything.to_dict("records"), strict=True):
         if label not in free.index and label.partition("[")[0] in crowded:
             continue
         values = [format_quantity(row[key], row["unit"]) for key in ("median", "q05", "q95")]
         convergence = [f"{row['ess_bulk']:.0f}", f"{row['r_hat']:.3f}"] if label in free.index else ["", ""]
-        rows.append([str(label), *values, *convergence])
+        rows.append([label, *values, *convergence])
     print_table(
         ("parameter", "median", "5 %", "95 %", "ESS", "R-hat"), rows, title=title, right=(1, 2, 3, 4, 5)
     )

@@ -103,7 +103,8 @@ def load_model(name: str | Path) -> ModelSpec:
 
     parameters = _read_parameters(block.parameters, "parameters", where, _parameter_quantity)
     data, noise = block.data, block.noise
-    noise_name, noise_parameters = None, ()
+    noise_name: str | None = None
+    noise_parameters: tuple[ParameterSpec, ...] = ()
     if data is not None and noise is not None:
         noise_name, noise_parameters = _read_noise(noise, data.observable, where)
     dataset: str | None = None

@@ -6,7 +6,7 @@ import json
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from skinbayes.errors import InputError
 from skinbayes.fit.result import Fit
@@ -24,7 +24,7 @@ STEPS = "steps"
 def save_fit(fit: Fit, path: Path) -> Path:
     """Write a fit as netCDF; the file appears whole or not at all."""
     temporary = path.with_name(path.name + ".part")
-    mode = "w"
+    mode: Literal["w", "a"] = "w"
     for name, group in fit.groups.items():
         dataset = group.assign_attrs(skinbayes=json.dumps(fit.provenance)) if name == "posterior" else group
         dataset.to_netcdf(temporary, mode=mode, group=name, engine="h5netcdf")

@@ -104,11 +104,11 @@ def _parameters(problem: Problem, draws: FloatArray) -> xarray.Dataset:
             coordinates["row"] = labels
             variables.setdefault(name, (("chain", "draw", "row"), values))
     dataset = _dataset(variables, problem, draws, coordinates)
-    for name, variable in dataset.data_vars.items():
-        variable.attrs["kind"] = "parameter" if any(p.name == name for p in problem.free) else "derived"
-        block = problem.spec.derived.get(str(name))
+    for key, variable in dataset.data_vars.items():
+        variable.attrs["kind"] = "parameter" if any(p.name == key for p in problem.free) else "derived"
+        block = problem.spec.derived.get(str(key))
         if block is not None:
-            variable.attrs |= {"long_name": block.meaning, "symbol": block.symbol or str(name)}
+            variable.attrs |= {"long_name": block.meaning, "symbol": block.symbol or str(key)}
     return dataset
 
 

@@ -140,8 +140,10 @@ def _dataset(spec: ModelSpec, data: str | Path | None) -> Dataset:
 
 
 def _columns(dataset: Dataset, names: set[str]) -> Conditions:
-    values = {key: column for key, column in dataset.columns.items() if key in names}
-    labels = {key: column for key, column in dataset.columns.items() if column.dtype.kind == "U"}
+    values = {key: np.asarray(column, dtype=float) for key, column in dataset.columns.items() if key in names}
+    labels = {
+        key: column.astype(np.str_) for key, column in dataset.columns.items() if column.dtype.kind == "U"
+    }
     return Conditions(values, labels, dataset.n_rows)
 
 

@@ -19,6 +19,8 @@ from skinbayes.fit.storage import RESULT, STEPS, SUMMARY, write_run
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
 
 if TYPE_CHECKING:
+    import xarray
+
     from skinbayes.problem import Problem
     from skinbayes.sampling.chains import Chains
     from skinbayes.sampling.ensembles import Progress
@@ -92,29 +94,30 @@ def sample(
     store = None if folder is None else SampleStore(folder / STEPS, resume=resume)
     chains = run_ensembles(target, settings, store=store, progress=progress)
     sampled = time.perf_counter()
-    fit = _gather(problem, chains, settings, seed)
-    fit.provenance["seconds"] = {
+    groups = _groups(problem, chains, seed)
+    seconds = {
         "sampling": sampled - started,
         "total": time.perf_counter() - started,
         "processor": time.process_time() - processor,
     }
+    provenance = _provenance(problem, chains, settings) | {"seconds": seconds}
+    fit = Fit(groups=groups, provenance=provenance, problem=problem)
     if folder is not None:
         fit.save(folder / RESULT)
         fit.summary(derived=True).to_csv(folder / SUMMARY, index_label="parameter")
     return fit
 
 
-def _gather(problem: Problem, chains: Chains, settings: Any, seed: int) -> Fit:
+def _groups(problem: Problem, chains: Chains, seed: int) -> dict[str, xarray.Dataset]:
     positions, log_density = chains.draws(DRAWS_PER_CHAIN)
     transform = problem.target().transform
     draws = transform.inverse(positions.reshape(-1, positions.shape[-1])).reshape(positions.shape)
     rng = np.random.default_rng([seed, 1])  # apart from the streams of the ensembles
-    groups = {
+    return {
         **posterior_groups(problem, draws, log_density, rng),
         **prior_groups(problem, rng, PRIOR_DRAWS),
         **data_groups(problem),
     }
-    return Fit(groups=groups, provenance=_provenance(problem, chains, settings), problem=problem)
 
 
 def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, Any]:
