@@ -104,6 +104,10 @@ CORPUS: dict[str, tuple[bytes | str, tuple[str, ...]]] = {
         HEADER + "A,1,1\nB,-1,nan\nC,1,x\n",
         ("line 3", "found -1 N", "(and 2 more problems in this file)"),
     ),
+    "first by line": (
+        HEADER + "A,1,nan\nB,-1,1\n",
+        ("line 2, column 'friction_coefficient'", "(and 1 more problem in this file)"),
+    ),
     "lines count comments": ("# made by hand\n\n" + HEADER + "A,-1,1\n", ("line 4", "found -1 N")),
 }
 
