@@ -19,14 +19,17 @@ from skinbayes.arrays import FloatArray
 WEAK = 0.05
 """A parameter whose effect is below this share of the largest effect is left out of a combination."""
 
-NICE = 0.05
-"""An exponent is written as a simple fraction if it stays this close to it at 90 % of the points."""
+NICE = {1: 0.05, 2: 0.02, 3: 0.02}
+"""An exponent is written as a fraction with this denominator if it stays this close to it at 90 % of the points."""
 
 PARALLEL = 0.999
 """Cosine above which a block of parameters acts like a derived quantity."""
 
 MAXIMUM_CANDIDATES = 3000
 """Bound on the sets of parameters tried in the search for simple vectors."""
+
+MAXIMUM_DECOMPOSITIONS = 20000
+"""Bound on the small matrices decomposed in that search."""
 
 BoolArray: TypeAlias = NDArray[np.bool_]
 
@@ -83,18 +86,29 @@ def simplest_basis(basis: FloatArray) -> list[FloatArray]:
     [ 1.  0. -1. -1.]
     """
     _, rank, dimension = basis.shape
+    if not rank:
+        return []
     active = [d for d in range(dimension) if np.quantile(np.linalg.norm(basis[:, :, d], axis=1), 0.9) > 0.01]
+    trials = list(islice(combinations(active, rank - 1), MAXIMUM_CANDIDATES))
+    few = basis[
+        :: 1 + len(basis) * len(trials) // MAXIMUM_DECOMPOSITIONS
+    ]  # a long search looks at fewer points
     candidates = []
-    for zeros in islice(combinations(active, rank - 1), MAXIMUM_CANDIDATES):
-        vector = _vanishing(basis, list(zeros))
+    for zeros in trials:
+        vector = _vanishing(few, list(zeros))
         if vector is not None:
             support = tuple(np.flatnonzero(typical(vector) >= WEAK))
-            candidates.append((len(support), support, vector))
-    candidates.sort(key=lambda candidate: candidate[:2])
+            candidates.append((len(support), support, zeros))
+    candidates.sort()
     chosen: list[FloatArray] = []
-    for _, _, vector in candidates:
+    tried = set()
+    for _, support, zeros in candidates:
         if len(chosen) == rank:
             break
+        vector = None if support in tried else _vanishing(basis, list(zeros))
+        tried.add(support)
+        if vector is None:
+            continue
         rows = np.stack([*chosen, vector], axis=1)
         rows = rows / np.linalg.norm(rows, axis=2, keepdims=True)
         if np.median(np.linalg.svd(rows, compute_uv=False)[:, -1]) > 0.02:
@@ -129,9 +143,9 @@ def nice(values: FloatArray) -> float | None:
     >>> nice(np.array([-0.99, -1.0, -1.01])), nice(np.array([0.4, 0.6]))
     (-1.0, None)
     """
-    for denominator in (1, 2, 3):
+    for denominator, tolerance in NICE.items():
         fraction = float(np.round(np.median(values) * denominator) / denominator)
-        if fraction and np.quantile(np.abs(values - fraction), 0.9) <= NICE * min(1.0, abs(fraction)):
+        if fraction and np.quantile(np.abs(values - fraction), 0.9) <= tolerance * min(1.0, abs(fraction)):
             return fraction
     return None
 

@@ -36,7 +36,7 @@ class Combination:
         """The combination with what has to be known about it."""
         if not self.constant:
             return f"{self.text} (its exponents vary over the prior)"
-        return self.text if self.exact else f"approximately {self.text}"
+        return self.text if self.exact else f"{self.text} (approximately)"
 
 
 @dataclass(frozen=True)

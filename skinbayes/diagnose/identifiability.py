@@ -23,6 +23,11 @@ from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.sensitivities import Derived, Predict, sensitivities
 from skinbayes.errors import InputError
 
+MAXIMUM_ELEMENTS = 1_000_000
+"""Bound on the number of derivatives (draws · rows · parameters) while more than the fewest draws are used."""
+
+FEWEST_DRAWS = 8
+
 
 def identify(
     names: Sequence[str],
@@ -49,7 +54,7 @@ def identify(
     groups : label to indices of rows, for groups that are looked at by themselves; all rows are always added
     derived : ``(B, D)`` to named quantities, each ``(B,)`` or ``(B, N)``; parameters that act only through one of
         them are replaced by it
-    maximum_draws : number of draws that are used
+    maximum_draws : number of draws that are used; fewer, but at least 8, for many thousands of rows
 
     Returns
     -------
@@ -74,8 +79,11 @@ def identify(
     positive = (points > 0.0).all(axis=0) if logarithmic is None else logarithmic
     logs = tuple(np.asarray(positive, dtype=bool).tolist())
     spread = _prior_spread(names, points, logs, prior_standard_deviation)
-    found = sensitivities(names, predict, points[:maximum_draws], logs, spread, derived)
-    rows = found.slopes.shape[1]
+    with np.errstate(all="ignore"):
+        rows = np.shape(predict(points[:1]))[1]
+    affordable = MAXIMUM_ELEMENTS // (rows * len(names))
+    count = min(maximum_draws, max(FEWEST_DRAWS, affordable))
+    found = sensitivities(names, predict, points[:count], logs, spread, derived)
     noise = np.broadcast_to(np.asarray(noise_standard_deviation, dtype=float), (rows,))
     if not ((noise > 0.0) & np.isfinite(noise)).all():
         raise InputError("The noise of each row must be a finite number > 0.")

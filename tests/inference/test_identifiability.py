@@ -170,7 +170,7 @@ def test_weak_parameters_are_dropped_and_mentioned():
     assert combination.text == "a / b"
     assert combination.weak == ("c",)
     assert not combination.exact
-    assert any("approximately a / b" in line for line in found.sentences())
+    assert any("a / b (approximately)" in line for line in found.sentences())
     assert any("c plays a small part" in line for line in found.sentences())
 
 
@@ -399,3 +399,16 @@ def test_ridges_and_their_exponents():
     assert not linear.logarithmic
     assert "factor" not in linear.sentence()
     assert ridges(["a", "c"], draws[:, [0, 2]]) == ()
+
+
+def test_many_rows_use_fewer_draws():
+    calls = []
+
+    def predict(theta):
+        calls.append(len(theta))
+        return np.log(theta[:, :1] / theta[:, 1:]) + np.zeros(60_000)
+
+    found = identify(("a", "b"), predict, positive_draws(60, 2), 0.1)
+    assert found.points == 8
+    assert max(calls) == 16
+    assert text_of(found) == ["a / b"]
