@@ -8,6 +8,7 @@ analysis.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from math import inf, isfinite, isnan
 from numbers import Real
@@ -280,6 +281,33 @@ def format_quantity(value_si: float, unit: str, digits: int = 4) -> str:
         if size <= largest and abs(rounded) >= (0.1 if scale == 1.0 and base in ("N", "s") else scale):
             return f"{_plain(rounded / scale, digits)} {prefix}{unit}"
     return f"{_plain(rounded, digits)} {unit}"
+
+
+def product_unit(factors: Iterable[tuple[str, float]]) -> str:
+    """Unit of a product of powers of quantities.
+
+    Parameters
+    ----------
+    factors : SI unit and power of each factor
+
+    Returns
+    -------
+    the unit as text, ``"1"`` if the product is dimensionless
+
+    Examples
+    --------
+    >>> product_unit([("Pa", 1), ("Pa", -1)]), product_unit([("Pa s", 1), ("m/s", 1)])
+    ('1', 'N/m')
+    """
+    registry = _registry()
+    product = registry.Quantity(1.0)
+    for unit, power in factors:
+        product = product * registry.Quantity(1.0, "" if unit == "1" else unit) ** power
+    if product.check(""):
+        return "1"
+    known = ("Pa", "N/m", "N", "m", "1/m", "m/s", "s", "1/s", "Pa s", "m^2", "K")
+    same = (unit for unit in known if product.check(registry.Quantity(1.0, unit).dimensionality))
+    return next(same, None) or f"{product.to_base_units().units:~}"
 
 
 def _plain(number: float, digits: int) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from skinbayes.errors import InputError
 from skinbayes.fit.references import references
 from skinbayes.fit.result import Fit
-from skinbayes.fit.storage import RESULT, STEPS, SUMMARY, write_run
+from skinbayes.fit.storage import RESULT, STEPS, SUMMARY, claim_run
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
 
 if TYPE_CHECKING:
@@ -84,11 +84,7 @@ def sample(
     settings = SamplerOptions(seed=seed, ess=ess, cores=cores, **options)
     folder = None if directory is None else Path(directory)
     if folder is not None:
-        if (folder / RESULT).exists() and not resume:
-            raise InputError(
-                f"{folder}: holds a result already; give another folder, or continue it with --resume"
-            )
-        write_run(folder, problem)
+        claim_run(folder, problem, resume)
     started, processor = time.perf_counter(), time.process_time()
     target = problem.target()
     store = None if folder is None else SampleStore(folder / STEPS, resume=resume)

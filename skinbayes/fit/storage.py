@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from skinbayes.errors import InputError
+from skinbayes.errors import FingerprintMismatch, InputError
 from skinbayes.fit.result import Fit
 
 if TYPE_CHECKING:
@@ -72,44 +72,119 @@ def _group_names(file: Path) -> list[str]:
         return [name for name, item in opened.items() if isinstance(item, h5py.Group)]
 
 
-def write_run(directory: Path, problem: Problem) -> None:
-    """Put model file, data and spectrum beside the run, so that it can be read when the originals are gone."""
-    directory.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(problem.spec.path, directory / "model.toml")
-    note: dict[str, str | None] = {
+def claim_run(directory: Path, problem: Problem, resume: bool) -> None:
+    """Make the directory of a run and put model file, data and spectrum into it, so that it can be read on its own.
+
+    Nothing is written into a directory that holds another run.
+
+    Parameters
+    ----------
+    directory : the run directory
+    problem : what is to be sampled
+    resume : the directory may hold a run of this problem, finished or not
+
+    Raises
+    ------
+    InputError
+        It holds a run that is not to be continued or cannot be, or it cannot be written.
+    """
+    holds_result = (directory / RESULT).exists()
+    if not resume and (holds_result or (directory / STEPS).is_dir()):
+        raise InputError(
+            f"{directory}: holds {'a result' if holds_result else 'an unfinished run'} already; "
+            "give another folder, or continue it with --resume"
+        )
+    try:
+        stored = _read_note(directory)
+        if stored is not None and resume and stored.get("fingerprint") != problem.fingerprint:
+            raise FingerprintMismatch(
+                f"{directory}: holds a run of '{stored.get('model')}' with another model, data, prior or version than "
+                f"'{problem.name}' here; give another folder"
+            )
+        if stored is None or not resume:
+            directory.mkdir(parents=True, exist_ok=True)
+            _write_inputs(directory, problem)
+    except OSError as error:
+        raise InputError(
+            f"{error.filename or directory}: cannot be used for a run ({error.strerror or error}); "
+            "expected a folder that can be written"
+        ) from None
+
+
+def _read_note(directory: Path) -> dict[str, Any] | None:
+    """What ``run.json`` says, None if there is no run; a damaged one counts as another run."""
+    try:
+        note = json.loads((directory / RUN).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except ValueError:
+        return {}
+    return note if isinstance(note, dict) else {}
+
+
+def _write_inputs(directory: Path, problem: Problem) -> None:
+    _copy(problem.spec.path, directory / "model.toml")
+    note: dict[str, Any] = {
         "model": problem.name,
         "fingerprint": problem.fingerprint,
         "data": None,
         "surface": None,
+        "settings": {name: text for name, text in problem.settings.items() if name != "surface"},
     }
+    if "surface" in problem.settings and problem.surface_file is None:
+        note["settings"]["surface"] = problem.settings["surface"]
     if problem.dataset is not None:
         source = Path(problem.dataset.path)
         folder = directory / "data"
         folder.mkdir(exist_ok=True)
-        shutil.copyfile(source, folder / source.name)
+        _copy(source, folder / source.name)
         provenance = source.with_name("provenance.toml")
         if source.name == "data.csv" and provenance.exists():
-            shutil.copyfile(provenance, folder / provenance.name)
+            _copy(provenance, folder / provenance.name)
             note["data"] = "data"
         else:
             note["data"] = f"data/{source.name}"
-    if problem.spec.surface_file is not None:
-        shutil.copyfile(problem.spec.surface_file, directory / "spectrum.csv")
+    if problem.surface_file is not None:
+        _copy(problem.surface_file, directory / "spectrum.csv")
         note["surface"] = "spectrum.csv"
+    # last, so that a directory with this file is complete
     (directory / RUN).write_text(json.dumps(note, indent=1) + "\n", encoding="utf-8")
 
 
-def _rebuild(path: Path, provenance: Mapping[str, object]) -> Problem | None:
+def _copy(source: Path, copy: Path) -> None:
+    # the user may point at the copies of an earlier run in this very directory
+    if not (copy.exists() and copy.samefile(source)):
+        shutil.copyfile(source, copy)
+
+
+def _rebuild(path: Path, provenance: Mapping[str, Any]) -> Problem | None:
     """The problem of a stored run, from the copies beside it or, for a bare file, from the shipped models."""
     from skinbayes.problem import load_problem
 
     try:
         if path.is_dir():
             note = json.loads((path / RUN).read_text(encoding="utf-8"))
-            settings = {"surface": str(path / note["surface"])} if note["surface"] else {}
+            settings = dict(note.get("settings") or {})
+            if note["surface"]:
+                settings["surface"] = str(path / note["surface"])
             problem = load_problem(path / "model.toml", path / note["data"], settings)
         else:
             problem = load_problem(str(provenance["model_path"]))
     except (InputError, OSError, ValueError, KeyError):
         return None
-    return problem if list(problem.names) == provenance["names"] else None
+    return problem if _is_same(problem, provenance) else None
+
+
+def _is_same(problem: Problem, provenance: Mapping[str, Any]) -> bool:
+    """Whether a problem is the one that was fitted; unlike the fingerprint this survives a new version of skinbayes."""
+    try:
+        return bool(
+            list(problem.names) == provenance["names"]
+            and problem.data_fingerprint == provenance["data"]["fingerprint"]
+            and {p.label: p.value for p in problem.fixed}
+            == {label: entry["value"] for label, entry in provenance["fixed"].items()}
+            and {p.label: p.prior_text for p in problem.free}
+            == {label: entry["text"] for label, entry in provenance["priors"].items()}
+        )
+    except (KeyError, TypeError):
+        return False

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.units import product_unit
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
@@ -108,6 +109,8 @@ def _parameters(problem: Problem, draws: FloatArray) -> xarray.Dataset:
         variable.attrs["kind"] = "parameter" if any(p.name == key for p in problem.free) else "derived"
         block = problem.spec.derived.get(str(key))
         if block is not None:
+            factors = [(QUANTITIES[name].unit, power) for name, power in block.product.items()]
+            variable.attrs["units"] = product_unit(factors)
             variable.attrs |= {"long_name": block.meaning, "symbol": block.symbol or str(key)}
     return dataset
 

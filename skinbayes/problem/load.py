@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -15,12 +13,14 @@ from skinbayes.files.dataset import Dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
+from skinbayes.problem.consistency import check_derived, check_names, check_required
+from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, plan_inputs
 from skinbayes.problem.problem import Problem
 from skinbayes.problem.settings import apply_settings
-from skinbayes.roughness import PowerSpectrum, named_surface
+from skinbayes.roughness import TabulatedSpectrum, named_surface
 from skinbayes.statistics.noise import noise_family
-from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX, suggestions
+from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 
 
 def load_problem(
@@ -59,7 +59,7 @@ def load_problem(
     parameters, surface, taken = apply_settings(
         spec, forward, settings or {}, () if rows is None else rows.values
     )
-    table, roughness = _surface(spec, surface)
+    table, surface_file, roughness = _surface(spec, surface)
     dataset, observed, spread = None, None, None
     if rows is not None:
         bound = rows.without(taken)
@@ -72,9 +72,9 @@ def load_problem(
         bound, observed, spread = _data_rows(spec, forward, dataset, taken)
     given = {p.name for p in parameters} | set(bound.values)
     parameters += [p for p in roughness if p.name not in given]
-    _check_names(spec, forward, parameters, bound)
+    check_names(spec, forward, parameters, bound)
     given |= {p.name for p in parameters}
-    _check_required(spec, forward, given, table)
+    check_required(spec, forward, given, table)
     for key, value in forward.optional.items():
         if key not in given:
             parameters.append(
@@ -85,12 +85,12 @@ def load_problem(
     parameters += spec.noise_parameters
     free = tuple(p for p in parameters if p.prior is not None)
     fixed = tuple(p for p in parameters if p.prior is None)
-    _check_derived(spec, forward, parameters, bound)
+    check_derived(spec, forward, parameters, bound)
     try:
         plan = plan_inputs(fixed, free, bound)
     except InputError as error:
         raise InputError(f"{spec.path}: {error}") from None
-    data_digest = _digest_data(spec, dataset, observed, spread)
+    data_digest = digest_data(spec, dataset, observed, spread)
     return Problem(
         spec=spec,
         forward=forward,
@@ -101,13 +101,17 @@ def load_problem(
         observed=observed,
         observed_spread=spread,
         table=table,
-        fingerprint=_digest_model(spec, free, fixed, table, data_digest),
+        fingerprint=digest_model(spec, free, fixed, table, data_digest),
         data_fingerprint=data_digest,
         _plan=plan,
+        settings=dict(settings or {}),
+        surface_file=surface_file,
     )
 
 
-def _surface(spec: ModelSpec, override: str | None) -> tuple[PowerSpectrum | None, list[ParameterSpec]]:
+def _surface(
+    spec: ModelSpec, override: str | None
+) -> tuple[TabulatedSpectrum | None, Path | None, list[ParameterSpec]]:
     name, file = spec.surface_name, spec.surface_file
     if override is not None:
         is_file = override.endswith(".csv") or Path(override).exists()
@@ -115,9 +119,9 @@ def _surface(spec: ModelSpec, override: str | None) -> tuple[PowerSpectrum | Non
     if file is not None:
         from skinbayes.files.spectrum import read_spectrum
 
-        return read_spectrum(file), []
+        return read_spectrum(file), file.resolve(), []
     if name is None:
-        return None, []
+        return None, None, []
     try:
         surface = named_surface(name)
     except InputError as error:
@@ -128,7 +132,7 @@ def _surface(spec: ModelSpec, override: str | None) -> tuple[PowerSpectrum | Non
         )
         for key in ROUGHNESS_INPUTS
     ]
-    return None, entries
+    return None, None, entries
 
 
 def _dataset(spec: ModelSpec, data: str | Path | None) -> Dataset:
@@ -192,100 +196,3 @@ def _data_rows(
             )
         spread = np.asarray(dataset.columns[spread_column], dtype=float)
     return rows, observed, spread
-
-
-def _check_names(
-    spec: ModelSpec, forward: ForwardModel, parameters: list[ParameterSpec], conditions: Conditions
-) -> None:
-    known = forward.input_names()
-    for parameter in parameters:
-        if parameter.name not in known:
-            raise InputError(
-                f"{spec.path}: parameters.{parameter.name}: the forward model '{forward.name}' has no such input."
-                f"{suggestions(parameter.name, list(known))} It takes {', '.join(known)}"
-            )
-        if parameter.name in conditions.values:
-            raise InputError(
-                f"{spec.path}: '{parameter.name}' is given twice: as a parameter and as a column of the data; drop one"
-            )
-
-
-def _check_required(
-    spec: ModelSpec, forward: ForwardModel, given: set[str], table: PowerSpectrum | None
-) -> None:
-    for entry in forward.required:
-        if isinstance(entry, str):
-            if entry not in given:
-                raise InputError(
-                    f"{spec.path}: '{forward.name}' needs {entry}: give it in [parameters] or as a column of the data"
-                )
-        elif not any(set(names) <= given for names in entry):
-            options = "; or ".join(" and ".join(names) for names in entry)
-            raise InputError(
-                f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data"
-            )
-    if (
-        forward.uses_surface
-        and table is None
-        and (missing := [n for n in ROUGHNESS_INPUTS if n not in given])
-    ):
-        raise InputError(
-            f"{spec.path}: the roughness is incomplete: {', '.join(missing)} missing; name a surface in [surface], or give "
-            "all five roughness parameters"
-        )
-
-
-def _check_derived(
-    spec: ModelSpec, forward: ForwardModel, parameters: list[ParameterSpec], conditions: Conditions
-) -> None:
-    if not spec.derived:
-        return
-    known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names)
-    for name, block in spec.derived.items():
-        for column, levels in block.rows.items():
-            unknown = set(levels) - set(conditions.labels.get(column, ()))
-            if unknown and conditions.n_rows > 1:
-                raise InputError(
-                    f"{spec.path}: derived.{name}.rows: no row has {column} = {sorted(unknown)[0]!r}"
-                )
-        for factor in block.product:
-            if factor not in known:
-                raise InputError(
-                    f"{spec.path}: derived.{name}: unknown factor '{factor}'.{suggestions(factor, sorted(known))} "
-                    f"Expected one of {', '.join(sorted(known))}"
-                )
-
-
-def _digest_data(
-    spec: ModelSpec, dataset: Dataset | None, observed: FloatArray | None, spread: FloatArray | None
-) -> str:
-    digest = hashlib.sha256()
-    if dataset is not None and observed is not None and spread is not None:
-        digest.update(json.dumps([spec.observable, list(dataset.columns)]).encode())
-        for column in dataset.columns.values():
-            digest.update(column.astype(str).tobytes() if column.dtype.kind == "U" else column.tobytes())
-        digest.update(spread.tobytes())
-    return digest.hexdigest()
-
-
-def _digest_model(
-    spec: ModelSpec,
-    free: tuple[ParameterSpec, ...],
-    fixed: tuple[ParameterSpec, ...],
-    table: PowerSpectrum | None,
-    data_digest: str,
-) -> str:
-    from skinbayes import __version__
-
-    content = {
-        "version": __version__,
-        "forward": spec.forward,
-        "observable": spec.observable,
-        "noise": spec.noise,
-        "free": [(p.label, repr(p.prior)) for p in free],
-        "fixed": sorted((p.label, repr(p.value)) for p in fixed),
-        "data": data_digest,
-        "table": repr(table and (table.wavevector_min, table.wavevector_max, np.asarray(table.power(np.geomspace(
-            float(np.min(table.wavevector_min)), float(np.max(table.wavevector_max)), 50))).tolist())),
-    }  # fmt: skip
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,6 +45,8 @@ class Problem:
     table : tabulated roughness spectrum, or None
     fingerprint : digest of everything the posterior depends on
     data_fingerprint : digest of the data alone
+    settings : values set over the model file, as given
+    surface_file : file of the tabulated spectrum, or None
     """
 
     spec: ModelSpec
@@ -58,6 +61,8 @@ class Problem:
     fingerprint: str
     data_fingerprint: str
     _plan: tuple[InputPlan, ...]
+    settings: Mapping[str, str] = field(default_factory=dict)
+    surface_file: Path | None = None
 
     @property
     def name(self) -> str:
@@ -260,8 +265,10 @@ class Problem:
         return self._pointwise(theta).sum(axis=-1)
 
     def _pointwise(self, theta: FloatArray) -> FloatArray:
+        if self.observed is None:
+            raise InputError(f"{self.spec.path}: no data are bound to these rows, so there is no likelihood")
         predicted = self.predict(theta)[self.observable]
-        return self._noise.log_density(np.asarray(self.observed), predicted, **self._noise_arguments(theta))
+        return self._noise.log_density(self.observed, predicted, **self._noise_arguments(theta))
 
     def _noise_arguments(self, theta: FloatArray) -> dict[str, FloatArray]:
         values = {entry.name: entry.values(theta) for entry in self._plan if entry.name in NOISE_PARAMETERS}

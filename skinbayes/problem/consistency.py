@@ -1,0 +1,76 @@
+"""What must fit together between a model file, its forward model and its rows."""
+
+from __future__ import annotations
+
+from skinbayes.errors import InputError
+from skinbayes.files.modelfile import ModelSpec
+from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
+from skinbayes.problem.inputs import Conditions
+from skinbayes.roughness import PowerSpectrum
+from skinbayes.vocabulary import suggestions
+
+
+def check_names(
+    spec: ModelSpec, forward: ForwardModel, parameters: list[ParameterSpec], conditions: Conditions
+) -> None:
+    """Refuse parameters that the forward model does not take, or that the data give as well."""
+    known = forward.input_names()
+    for parameter in parameters:
+        if parameter.name not in known:
+            raise InputError(
+                f"{spec.path}: parameters.{parameter.name}: the forward model '{forward.name}' has no such input."
+                f"{suggestions(parameter.name, list(known))} It takes {', '.join(known)}"
+            )
+        if parameter.name in conditions.values:
+            raise InputError(
+                f"{spec.path}: '{parameter.name}' is given twice: as a parameter and as a column of the data; drop one"
+            )
+
+
+def check_required(
+    spec: ModelSpec, forward: ForwardModel, given: set[str], table: PowerSpectrum | None
+) -> None:
+    """Refuse a model that lacks an input its forward model needs."""
+    for entry in forward.required:
+        if isinstance(entry, str):
+            if entry not in given:
+                raise InputError(
+                    f"{spec.path}: '{forward.name}' needs {entry}: give it in [parameters] or as a column of the data"
+                )
+        elif not any(set(names) <= given for names in entry):
+            options = "; or ".join(" and ".join(names) for names in entry)
+            raise InputError(
+                f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data"
+            )
+    if (
+        forward.uses_surface
+        and table is None
+        and (missing := [n for n in ROUGHNESS_INPUTS if n not in given])
+    ):
+        raise InputError(
+            f"{spec.path}: the roughness is incomplete: {', '.join(missing)} missing; name a surface in [surface], or give "
+            "all five roughness parameters"
+        )
+
+
+def check_derived(
+    spec: ModelSpec, forward: ForwardModel, parameters: list[ParameterSpec], conditions: Conditions
+) -> None:
+    """Refuse derived products of factors or rows that do not exist."""
+    if not spec.derived:
+        return
+    known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names)
+    for name, block in spec.derived.items():
+        for column, levels in block.rows.items():
+            unknown = set(levels) - set(conditions.labels.get(column, ()))
+            if unknown and conditions.n_rows > 1:
+                raise InputError(
+                    f"{spec.path}: derived.{name}.rows: no row has {column} = {sorted(unknown)[0]!r}"
+                )
+        for factor in block.product:
+            if factor not in known:
+                raise InputError(
+                    f"{spec.path}: derived.{name}: unknown factor '{factor}'.{suggestions(factor, sorted(known))} "
+                    f"Expected one of {', '.join(sorted(known))}"
+                )
