@@ -172,7 +172,7 @@ def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     Notes
     -----
-    Relative error below 1e-11 for 1 ≤ E0/E1 ≤ 1e7 and below 1e-9 down to E0/E1 = 1e-7 (Eq. 4 evaluated as
+    Relative error below 2e-11 for 1 ≤ E0/E1 ≤ 1e7 and below 1e-9 down to E0/E1 = 1e-7 (Eq. 4 evaluated as
     printed loses seven to nine digits for a stiff layer). Frictionless contact: the shear stress at the
     surface is neglected.
 

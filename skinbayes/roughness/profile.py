@@ -37,13 +37,19 @@ def isotropic_from_profile(wavevector: FloatArray, profile_power: FloatArray) ->
             f"profile_power rises from {profile_power[-2]:g} m^3 to {profile_power[-1]:g} m^3 at its end, but must "
             "fall there: it is continued beyond the table by its last power law."
         )
-    pieces = np.ceil(np.diff(log_q) / _WIDEST).astype(int)
+    pieces = np.maximum(np.ceil(np.diff(log_q) / _WIDEST), 1).astype(int)
+    ends = [np.geomspace(a, b, n + 1)[:-1] for a, b, n in zip(wavevector, wavevector[1:], pieces, strict=False)]
+    edges, cell = np.append(np.concatenate(ends), wavevector[-1]), np.repeat(np.arange(pieces.size), pieces)
     power = np.empty_like(wavevector)
     for i, q in enumerate(wavevector):
-        power[i] = (
-            _table_part(q, i, wavevector, profile_power, exponent, pieces)
-            + _tail(q, wavevector, profile_power, exponent)
-        ) / np.pi
+        above = cell >= i
+        # −∫ C1D′(k)/sqrt(k² − q²) dk, with k = q cosh t to cancel the root
+        t = np.arccosh(np.maximum(edges[np.append(above, True)] / q, 1.0))
+        k = q * np.cosh(t[:-1, None] + np.diff(t)[:, None] * _NODES)
+        j = cell[above][:, None]
+        slope = -exponent[j] * profile_power[j] / k * (k / wavevector[j]) ** exponent[j]
+        inside = float(np.sum(slope * _WEIGHTS * np.diff(t)[:, None]))
+        power[i] = (inside + _tail(q, wavevector[-1], profile_power[-1], -exponent[-1])) / np.pi
     wrong = np.flatnonzero(power <= 0)
     if wrong.size:
         raise InputError(
@@ -53,28 +59,8 @@ def isotropic_from_profile(wavevector: FloatArray, profile_power: FloatArray) ->
     return power
 
 
-def _table_part(
-    q: float,
-    first: int,
-    wavevector: FloatArray,
-    profile_power: FloatArray,
-    exponent: FloatArray,
-    pieces: FloatArray,
-) -> float:
-    """``−∫ C1D′(k)/sqrt(k² − q²) dk`` from node ``first`` (at q) to the last; k = q cosh t cancels the root."""
-    total = 0.0
-    for j in range(first, exponent.size):
-        ends = np.geomspace(wavevector[j], wavevector[j + 1], int(pieces[j]) + 1)
-        t = np.arccosh(np.maximum(ends / q, 1.0))
-        k = q * np.cosh(t[:-1, None] + np.diff(t)[:, None] * _NODES)
-        slope = -exponent[j] * profile_power[j] / k * (k / wavevector[j]) ** exponent[j]
-        total += float(np.sum(slope * _WEIGHTS * np.diff(t)[:, None]))
-    return total
-
-
-def _tail(q: float, wavevector: FloatArray, profile_power: FloatArray, exponent: FloatArray) -> float:
-    """The same from the last node on, where C1D ∝ k^−b: an incomplete beta function of (q/q_last)²."""
-    b, last = -exponent[-1], wavevector[-1]
+def _tail(q: float, last: float, last_power: float, b: float) -> float:
+    """The same integral from the last node on, where C1D ∝ k^−b: an incomplete beta function of (q/last)²."""
     half = (b + 1) / 2
     incomplete = betainc(half, 0.5, (q / last) ** 2) * beta(half, 0.5)
-    return float(b * profile_power[-1] * (last / q) ** b / q * incomplete / 2)
+    return float(b * last_power * (last / q) ** b / q * incomplete / 2)

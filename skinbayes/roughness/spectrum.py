@@ -134,9 +134,11 @@ class SelfAffineSpectrum:
     def _unit_moment(self, exponent: float) -> FloatArray:
         """``∫ q^exponent C dq / C0`` in closed form."""
         q0, q_r, q1 = self.wavevector_min, self.wavevector_rolloff, self.wavevector_max
-        plateau = _power_integral(np.log(q_r / q0), exponent + 1)
-        fractal = _power_integral(np.log(q1 / q_r), exponent - 1 - 2 * self.hurst_exponent)
-        return np.asarray(q0 ** (exponent + 1) * plateau + q_r ** (exponent + 1) * fractal)
+        order = exponent + 1
+        plateau = _power_integral(np.log(q_r / q0), order)
+        fractal = _power_integral(np.log(q1 / q_r), order - 2 - 2 * self.hurst_exponent)
+        # exp and log instead of **, which rounds differently for scalars and arrays
+        return np.asarray(np.exp(order * np.log(q0)) * plateau + np.exp(order * np.log(q_r)) * fractal)
 
     def power(self, wavevector: ArrayLike) -> FloatArray:
         """C(q), Eq. 1 of the paper.
@@ -154,7 +156,7 @@ class SelfAffineSpectrum:
         q0, q_r, q1 = self._band(axes)
         plateau = with_axes(self.plateau_power, axes)
         with np.errstate(all="ignore"):
-            decay = np.maximum(q / q_r, 1.0) ** (-2 - 2 * with_axes(self.hurst_exponent, axes))
+            decay = np.power(np.maximum(q / q_r, 1.0), -2 - 2 * with_axes(self.hurst_exponent, axes))
             inside = np.where(np.isnan(q), np.nan, (q >= q0) & (q <= q1))
             return np.asarray(plateau * decay * inside)[()]
 
@@ -208,7 +210,7 @@ class SelfAffineSpectrum:
             # f = 1 from ``end`` on
             turn = np.maximum(np.minimum(q_r, top), end)
             plateau = np.square(np.square(end / q_r)) * _power_integral(np.log(turn / end), 4.0)
-            fractal = (turn / q_r) ** slope * _power_integral(np.log(top / turn), slope)
+            fractal = np.exp(slope * np.log(turn / q_r)) * _power_integral(np.log(top / turn), slope)
             remainder = scale * (plateau + fractal)
         return SlopeQuadrature(nodes, weights, remainder)
 

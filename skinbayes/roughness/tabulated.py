@@ -138,7 +138,7 @@ class TabulatedSpectrum:
     def _unscaled(self, q: FloatArray) -> FloatArray:
         cell = np.clip(np.searchsorted(self.wavevector, q, side="right") - 1, 0, self.wavevector.size - 2)
         with np.errstate(all="ignore"):
-            value = self.node_power[cell] * (q / self.wavevector[cell]) ** self._exponent[cell]
+            value = self.node_power[cell] * np.power(q / self.wavevector[cell], self._exponent[cell])
         inside = (q >= self.wavevector[0]) & (q <= self.wavevector[-1])
         return np.where(inside, value, np.where(np.isnan(q), np.nan, 0.0))
 
