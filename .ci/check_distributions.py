@@ -29,7 +29,17 @@ def check_sdist(path: Path, tracked: set[str]) -> list[str]:
     """What is wrong with the sdist: everything that builds, tests and explains the package."""
     with tarfile.open(path) as archive:
         names = {str(PurePosixPath(*PurePosixPath(m.name).parts[1:])) for m in archive if m.isfile()}
-    parts = ("skinbayes/", "models/", "datasets/", "tests/", "docs/", "notebooks/", "README.md", "LICENSE", "pyproject.toml")
+    parts = (
+        "skinbayes/",
+        "models/",
+        "datasets/",
+        "tests/",
+        "docs/",
+        "notebooks/",
+        "README.md",
+        "LICENSE",
+        "pyproject.toml",
+    )
     wanted = {name for name in tracked if name.startswith(parts)}
     return [f"{path.name}: lacks {name}" for name in sorted(wanted - names)]
 

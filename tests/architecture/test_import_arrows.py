@@ -1,0 +1,218 @@
+"""Each floor of docs/architecture.md knows only those below it; read from the imports, also those inside functions."""
+
+from __future__ import annotations
+
+import ast
+import sys
+
+import pytest
+from source_tree import ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
+
+WORDS = {"errors", "arrays", "constants", "vocabulary"}
+PHYSICS = {"roughness", "contact", "friction"}
+STATISTICS = {"statistics", "sampling", "diagnose"}
+
+MAY_KNOW: dict[str, set[str]] = {
+    "errors": set(),
+    "arrays": set(),
+    "constants": set(),
+    "vocabulary": set(),
+    "units": {"errors", "arrays", "vocabulary", "constants"},
+    # physics
+    "roughness": {"errors", "arrays", "constants"},
+    "contact": {"errors", "arrays", "constants", "roughness"},
+    "friction": {"errors", "arrays", "constants"},
+    # statistics that know nothing of skin
+    "statistics": {"errors", "arrays"},
+    "sampling": {"errors", "arrays", "statistics"},
+    "diagnose": {"errors", "arrays", "statistics"},
+    # where they meet
+    "files": {*WORDS, "units", "roughness", "statistics"},
+    "forward": {*WORDS, *PHYSICS},
+    "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "skinbayes"},
+    "fit": {*WORDS, "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
+    "comparison": {*WORDS, "units", "statistics", "fit"},
+    # faces
+    "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
+    "report": {*WORDS, "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
+               "skinbayes"},
+    "cli": {*WORDS, "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
+    # the shop window names its goods but opens them when asked
+    "skinbayes": {"errors", "files", "problem", "fit", "comparison"},
+}  # fmt: skip
+"""Floor to the floors it may import, besides itself."""
+
+FIT_METHODS_MAY_DRAW = "plot"
+"""``Fit.plot_*`` reach up to the figures, lazily: a convenience of the result, not a dependency of the module."""
+
+HOMES: dict[str, set[str]] = {
+    "arviz": {"fit"},
+    "click": {"cli"},
+    "corner": {"plot"},
+    "emcee": {"sampling"},
+    "h5py": {"sampling", "fit"},
+    "jinja2": {"report"},
+    "matplotlib": {"plot", "report"},
+    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "vocabulary"},
+    "pandas": {"files", "fit", "plot", "report"},
+    "pint": {"units"},
+    "pydantic": {"files"},
+    "rich": {"cli"},
+    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot"},
+    "xarray": {"fit", "plot", "report"},
+}
+"""Library to the floors that may import it; a library that is not here is not a dependency."""
+
+HEAVY = (
+    "arviz",
+    "corner",
+    "emcee",
+    "h5py",
+    "jinja2",
+    "matplotlib",
+    "pandas",
+    "pint",
+    "rich",
+    "scipy.stats",
+    "xarray",
+)
+"""Imported inside the functions that use them."""
+
+
+def reaches_up_lazily(found: Import) -> bool:
+    return (
+        found.module == "skinbayes.fit.result"
+        and floor_of(found.target) == FIT_METHODS_MAY_DRAW
+        and len(found.inside) == 2
+        and found.inside[0] == "Fit"
+        and found.inside[1].startswith("plot_")
+    )
+
+
+def within(target: str, library: str) -> bool:
+    return target == library or target.startswith(library + ".")
+
+
+def test_every_floor_has_a_rule_and_a_place_in_the_drawing() -> None:
+    floors = {floor_of(module) for module in modules()}
+    assert floors <= set(MAY_KNOW), f"no rule for {sorted(floors - set(MAY_KNOW))}"
+    drawing = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8").split("## Arrays")[0]
+    missing = [f for f in floors - {"skinbayes"} if not any(f"{f}{end}" in drawing for end in (".py", "/"))]
+    assert not missing, f"docs/architecture.md does not draw {sorted(missing)}"
+
+
+@pytest.mark.parametrize("floor", sorted({floor_of(module) for module in modules()}))
+def test_floor_knows_only_those_below(floor: str) -> None:
+    wrong = [
+        str(found)
+        for module in modules()
+        if floor_of(module) == floor
+        for found in imports_of(module)
+        if within(found.target, "skinbayes")
+        and floor_of(found.target) not in MAY_KNOW[floor] | {floor}
+        and not reaches_up_lazily(found)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_rules_themselves_have_no_circle() -> None:
+    below = {floor: known - {"skinbayes"} for floor, known in MAY_KNOW.items()}
+    settled: set[str] = set()
+    while left := [floor for floor in below if floor not in settled]:
+        free = [floor for floor in left if below[floor] <= settled]
+        assert free, f"a circle among {left}"
+        settled |= set(free)
+
+
+def test_statistics_know_no_skin_and_physics_no_inference() -> None:
+    # said once more in plain words, so that a careless change of the table above is seen
+    skin = {
+        *PHYSICS,
+        "files",
+        "forward",
+        "problem",
+        "fit",
+        "comparison",
+        "plot",
+        "report",
+        "cli",
+        "vocabulary",
+        "units",
+    }
+    assert not any(MAY_KNOW[floor] & skin for floor in STATISTICS)
+    assert not any(MAY_KNOW[floor] - {"errors", "arrays", "constants"} - PHYSICS for floor in PHYSICS)
+    assert not MAY_KNOW["files"] & {"forward", "problem", "sampling", "fit"}
+    assert not MAY_KNOW["problem"] & {"sampling", "fit", "plot", "report", "cli"}
+    assert not MAY_KNOW["fit"] & {"plot", "report", "cli"}
+
+
+def test_libraries_stay_in_their_rooms() -> None:
+    wrong = []
+    for found in all_imports():
+        library = found.target.partition(".")[0]
+        if library in sys.stdlib_module_names or library == "skinbayes":
+            continue
+        if library not in HOMES:
+            wrong.append(f"{found}, which is not a dependency")
+        elif floor_of(found.module) not in HOMES[library]:
+            wrong.append(f"{found}; expected only in {', '.join(sorted(HOMES[library]))}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_heavy_libraries_are_imported_where_they_are_used() -> None:
+    wrong = [str(f) for f in all_imports() if not f.lazy and any(within(f.target, name) for name in HEAVY)]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_only_the_command_line_writes_to_the_terminal() -> None:
+    wrong = []
+    for module in modules():
+        if floor_of(module) == "cli":
+            continue
+        for node in ast.walk(tree_of(module)):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Name)
+                and node.func.id in ("print", "input")
+            ):
+                wrong.append(f"{module}, line {node.lineno}: {node.func.id}()")
+            if isinstance(node, ast.Attribute) and node.attr in (
+                "stdout",
+                "stderr",
+                "stdin",
+                "argv",
+                "echo",
+                "secho",
+            ):
+                wrong.append(f"{module}, line {node.lineno}: .{node.attr}")
+            if isinstance(node, ast.ImportFrom) and node.module == "sys":
+                wrong.append(
+                    f"{module}, line {node.lineno}: from sys import; write sys.NAME, so that it can be seen"
+                )
+    assert not wrong, "\n".join(wrong)
+
+
+def test_nothing_runs_text_from_a_file() -> None:
+    # a model file is data: whoever opens a stranger's file runs nothing
+    wrong = []
+    for module in modules():
+        for node in ast.walk(tree_of(module)):
+            name = (
+                getattr(node.func, "id", getattr(node.func, "attr", "")) if isinstance(node, ast.Call) else ""
+            )
+            if name in ("eval", "exec", "compile", "__import__", "system", "popen") and not _is_regex(node):
+                wrong.append(f"{module}, line {node.lineno}: {name}()")
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("pickle.load", "pickle.dump"):
+                wrong.append(
+                    f"{module}, line {node.lineno}: pickle on disk; files are TOML, CSV, netCDF and HDF5"
+                )
+    wrong += [
+        str(found)
+        for found in all_imports()
+        if found.target.partition(".")[0] in ("shelve", "marshal", "dill")
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def _is_regex(call: ast.Call) -> bool:
+    return ast.unparse(call.func) == "re.compile"
