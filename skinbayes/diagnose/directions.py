@@ -91,9 +91,28 @@ def _either(fraction: float | None, value: float) -> float:
     return float(value) if fraction is None else fraction
 
 
+def _renamed(
+    combination: Combination, parameter: str, derived: str, power: float, found: Sensitivities
+) -> str:
+    """The text of a combination with ``derived`` ∝ ``parameter``^``power`` in the place of ``parameter``."""
+    other = {name for name, log in zip(found.names, found.logarithmic, strict=True) if not log}
+    written: dict[str, tuple[float, float, float, float | None]] = {}
+    for name, value in combination.exponents.items():
+        if name not in other:
+            factor = 1.0 / power if name == parameter else 1.0
+            low, high = sorted(factor * end for end in combination.ranges[name])
+            exponent = factor * value
+            written[derived if name == parameter else name] = (
+                low,
+                exponent,
+                high,
+                nice(np.array([exponent])),
+            )
+    return product(written, [name for name in combination.exponents if name in other])
+
+
 def equivalents(found: Sensitivities, groups: tuple[Group, ...]) -> tuple[Equivalent, ...]:
     """Derived quantities that are a power of one parameter of a named combination, the same for all rows."""
-    mentioned = {name for group in groups for c in group.combinations for name in c.exponents}
     result = []
     for name, slopes in found.derived.items():
         flat = slopes if slopes.ndim == 3 else slopes[:, None, :]
@@ -102,8 +121,15 @@ def equivalents(found: Sensitivities, groups: tuple[Group, ...]) -> tuple[Equiva
             continue
         column = int(np.flatnonzero(strong)[0])
         power = nice(flat[:, :, column].ravel())
-        if power is not None and found.logarithmic[column] and found.names[column] in mentioned:
-            result.append(Equivalent(name, found.names[column], power))
+        parameter = found.names[column]
+        reads = [
+            _renamed(c, parameter, name, power, found)
+            for group in groups
+            for c in group.combinations
+            if power is not None and parameter in c.exponents and len(c.exponents) > 1
+        ]
+        if power is not None and reads and found.logarithmic[column]:
+            result.append(Equivalent(name, parameter, power, tuple(dict.fromkeys(reads))))
     return tuple(result)
 
 

@@ -127,16 +127,21 @@ class Equivalent:
     ----------
     derived, parameter : their names
     power : derived ∝ parameter^power
+    reads : the combinations with that parameter, written with the derived quantity instead
     """
 
     derived: str
     parameter: str
     power: float
+    reads: tuple[str, ...]
 
     def sentence(self) -> str:
         """The relation in words."""
         relation = product({self.parameter: (self.power, self.power, self.power, self.power)})
-        return f"Of all free parameters only {self.parameter} moves {self.derived}: it is proportional to {relation}."
+        return (
+            f"Of all free parameters only {self.parameter} moves {self.derived}, which is proportional to {relation}: "
+            f"the data may as well be said to determine {listed(self.reads)}."
+        )
 
 
 @dataclass(frozen=True)

@@ -275,7 +275,22 @@ def test_derived_quantity_of_one_parameter_is_mentioned():
         derived=lambda theta: {"slope": 3.0 * theta[:, 1], "other": theta[:, 4] ** 2},
     )
     assert [(item.derived, item.parameter, item.power) for item in found.equivalents] == [("slope", "b", 1.0)]
-    assert "only b moves slope: it is proportional to b." in found.equivalents[0].sentence()
+    words = found.equivalents[0].sentence()
+    assert "only b moves slope, which is proportional to b" in words
+    assert words.endswith("said to determine a / slope.")
+
+
+def test_derived_quantity_that_is_a_power_of_one_parameter():
+    found = identify(
+        NAMES,
+        columns(lambda a, b, c, d, e: a / b),
+        positive_draws(),
+        0.1,
+        derived=lambda theta: {"square": theta[:, 1] ** 2},
+    )
+    (item,) = found.equivalents
+    assert item.power == 2.0
+    assert item.reads == ("a / square^(1/2)",)
 
 
 def test_parameters_that_are_not_positive_enter_by_themselves():
