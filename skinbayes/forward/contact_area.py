@@ -31,22 +31,21 @@ def wavevector_of(inputs: Inputs, spectrum: PowerSpectrum) -> FloatArray:
     return np.asarray(spectrum.wavevector_max, dtype=float)
 
 
-def _variance(inputs: Inputs, spectrum: PowerSpectrum, wavevector: FloatArray) -> FloatArray:
+def _variance(inputs: Inputs, table: PowerSpectrum | None, wavevector: FloatArray) -> FloatArray:
     """Stress variance at one wavevector a row, shape ``(B, N)``."""
     if all(np.shape(inputs[name])[-1:] in ((), (1,)) for name in _ENTERS_VARIANCE if name in inputs):
         # nothing but the wavevector differs from row to row: one cumulative integral serves all rows
         batch = {
             name: np.atleast_2d(value)[:, 0] for name, value in inputs.items() if name in _ENTERS_VARIANCE
         }
-        table = None if "hurst_exponent" in inputs else spectrum
         return stress_variance(spectrum_of(batch, table), skin_of({**inputs, **batch}), wavevector)
-    return stress_variance(spectrum, skin_of(inputs), wavevector[..., np.newaxis])[..., 0]
+    return stress_variance(spectrum_of(inputs, table), skin_of(inputs), wavevector[..., np.newaxis])[..., 0]
 
 
 def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
     spectrum, skin = spectrum_of(inputs, table), skin_of(inputs)
     wavevector = wavevector_of(inputs, spectrum)
-    area = contact_area_of(inputs, table, _variance(inputs, spectrum, wavevector))
+    area = contact_area_of(inputs, table, _variance(inputs, table, wavevector))
     return {
         "relative_contact_area": area.total,
         "relative_contact_area_elastic": area.elastic,

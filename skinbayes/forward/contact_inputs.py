@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from skinbayes.arrays import FloatArray
@@ -46,7 +44,7 @@ def spectrum_of(inputs: Inputs, table: PowerSpectrum | None) -> PowerSpectrum:
         return SelfAffineSpectrum(*(inputs[name] for name in ROUGHNESS_INPUTS))
     if "rms_height" in inputs and isinstance(table, TabulatedSpectrum):
         scale = (inputs["rms_height"] / rms_height(table)) ** 2 * np.asarray(table.scale)
-        return replace(table, scale=scale)
+        return TabulatedSpectrum(table.wavevector, table.node_power, scale)
     return table
 
 

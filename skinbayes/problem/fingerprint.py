@@ -11,7 +11,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.roughness import PowerSpectrum
+from skinbayes.roughness import TabulatedSpectrum
 
 
 def digest_data(
@@ -31,7 +31,7 @@ def digest_model(
     spec: ModelSpec,
     free: tuple[ParameterSpec, ...],
     fixed: tuple[ParameterSpec, ...],
-    table: PowerSpectrum | None,
+    table: TabulatedSpectrum | None,
     data_digest: str,
 ) -> str:
     """Digest of everything the posterior depends on; comments and titles do not enter."""
