@@ -52,8 +52,8 @@ def r_hat(chains: ArrayLike) -> float:
 
     Returns
     -------
-    1 for chains that agree, larger for those that do not; nan if no chain varies and all agree, inf if none varies and
-    they differ
+    1 for chains that agree, larger for those that do not; nan for single draws or if nothing varies, inf if no
+    chain varies and they differ
 
     Examples
     --------
@@ -62,6 +62,8 @@ def r_hat(chains: ArrayLike) -> float:
     """
     array = np.asarray(chains, dtype=float)
     draws = array.shape[1]
+    if draws < 2:
+        return float("nan")
     within = array.var(axis=1, ddof=1).mean()
     between = array.mean(axis=1).var(ddof=1)
     if within == 0.0:

@@ -152,46 +152,37 @@ def _numbers(values: FloatArray) -> tuple[float, float, float, float, float]:
 
 
 def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) -> Iterator[str]:
+    """One sentence for each condition that is not met; comparisons are such that nan does not meet them."""
     kept = report.steps - report.burn_in
-    if kept < 4:
-        yield "too few steps to judge"
-    # Comparisons are written so that nan counts as not met.
-    worst = int(np.argmax(np.nan_to_num(report.tau, nan=np.inf)))
-    name = report.names[worst]
-    if not np.isfinite(report.tau[worst]):
+    name, tau = _largest(report, report.tau)
+    if not tau < np.inf:
         yield (
             f"the autocorrelation of {name} has not died out within the {kept} kept steps, "
             "so its autocorrelation time is unknown"
         )
-    elif not kept * ensembles >= options.steps_over_tau * report.tau[worst]:
-        yield (
-            f"{kept * ensembles} kept steps in {ensembles} ensembles are {kept * ensembles / report.tau[worst]:.0f} "
-            f"autocorrelation times of {name} ({report.tau[worst]:.1f} steps), {options.steps_over_tau:g} are asked for"
-        )
-    worst = int(np.argmax(np.nan_to_num(report.tau_change, nan=np.inf)))
-    if np.isfinite(report.tau[worst]) and not report.tau_change[worst] <= TAU_CHANGE:
-        yield (
-            f"the autocorrelation time of {report.names[worst]} is not stable: {report.tau_change[worst]:+.0%} with "
-            "longer lags"
-        )
-    for what, sizes in (("", report.ess_bulk),):
-        worst = int(np.argmin(sizes))
-        if not sizes[worst] >= options.ess:
+    else:
+        if not kept * ensembles >= options.steps_over_tau * tau:
             yield (
-                f"the effective sample size {what}of {report.names[worst]} is {sizes[worst]:.0f}, "
-                f"{options.ess:.0f} is asked for"
+                f"the {kept} kept steps of {ensembles} ensembles are {kept * ensembles / tau:.0f} autocorrelation "
+                f"times of {name} ({tau:.1f} steps), {options.steps_over_tau:g} are asked for"
             )
-    worst = int(np.argmax(np.nan_to_num(report.r_hat, nan=np.inf)))
-    if not report.r_hat[worst] <= options.r_hat:
-        yield (
-            f"the ensembles disagree about {report.names[worst]}: R-hat {report.r_hat[worst]:.3f}, "
-            f"at most {options.r_hat:g} is accepted"
-        )
-    worst = int(np.argmax(np.nan_to_num(report.walker_r_hat, nan=np.inf)))
-    if not report.walker_r_hat[worst] <= WALKER_R_HAT:
-        yield (
-            f"single walkers disagree about {report.names[worst]}: R-hat {report.walker_r_hat[worst]:.3f}, "
-            f"at most {WALKER_R_HAT:g} is accepted"
-        )
+        name, change = _largest(report, report.tau_change)
+        if not change <= TAU_CHANGE:
+            yield f"the autocorrelation time of {name} is not stable: {change:+.0%} when longer lags are included"
+    name, size = _largest(report, -report.ess_bulk)
+    if not -size >= options.ess:
+        yield f"the effective sample size of {name} is {-size:.0f}, {options.ess:.0f} is asked for"
+    name, value = _largest(report, report.r_hat)
+    if not value <= options.r_hat:
+        yield f"the ensembles disagree about {name}: R-hat {value:.3f}, at most {options.r_hat:g} is accepted"
+    name, value = _largest(report, report.walker_r_hat)
+    if not value <= WALKER_R_HAT:
+        yield f"single walkers disagree about {name}: R-hat {value:.3f}, at most {WALKER_R_HAT:g} is accepted"
     if report.stuck_walkers:
-        yield f"{report.stuck_walkers} walkers never moved"
+        yield f"{report.stuck_walkers} of all walkers never moved"
+
+
+def _largest(report: StoppingReport, values: FloatArray) -> tuple[str, float]:
+    """Name and value of the coordinate with the largest value; nan counts as largest."""
+    worst = int(np.argmax(np.nan_to_num(values, nan=np.inf)))
+    return report.names[worst], float(values[worst])

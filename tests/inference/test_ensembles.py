@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import pickle
 import signal
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sampling_targets import Failing, Faulty, Slow, UnitGaussian
+from sampling_targets import Failing, Faulty, UnitGaussian
 
 from skinbayes.errors import InputError
 from skinbayes.sampling.advance import Density, advance
@@ -68,9 +69,18 @@ def test_walker_by_walker_is_vectorised(serial):
     assert same(serial, run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, vectorize=False, **SHORT)))
 
 
-@pytest.mark.parametrize("cores", [2, 8])
-def test_processes_are_serial(serial, cores):
-    assert same(serial, run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, cores=cores, **SHORT)))
+def test_processes_are_serial(serial):
+    """Beside another thread, too: nothing is forked from this process. The workers end with the run."""
+    stop = threading.Event()
+    thread = threading.Thread(target=stop.wait)
+    thread.start()
+    try:
+        shared = run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, cores=2, **SHORT))
+    finally:
+        stop.set()
+        thread.join()
+    assert same(serial, shared)
+    assert multiprocessing.active_children() == []
 
 
 def test_block_length_does_not_change_draws(serial):
@@ -141,14 +151,13 @@ def test_progress_is_told():
     assert told[-1].report is chains.report
 
 
-@pytest.mark.parametrize("cores", [1, 2])
-def test_ctrl_c_keeps_whole_blocks(serial, cores, capfd):
+def test_ctrl_c_keeps_whole_blocks(serial, capfd):
     def interrupt(progress):
         if progress.steps == 40:
             os.kill(os.getpid(), signal.SIGINT)
 
     with pytest.raises(SamplingInterrupted) as caught:
-        run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, cores=cores, **SHORT), progress=interrupt)
+        run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, **SHORT), progress=interrupt)
     assert np.array_equal(caught.value.chains.positions, serial.positions[:, :40])
     assert not caught.value.chains.converged
     assert capfd.readouterr() == ("", "")
@@ -189,30 +198,9 @@ def test_ctrl_c_in_a_terminal_reaches_workers_quietly(tmp_path):
     assert complaints == ""
 
 
-def test_workers_end_when_the_run_does():
-    import multiprocessing
-
-    run_ensembles(UnitGaussian(2), SamplerOptions(seed=1, cores=2, **SHORT))
-    assert multiprocessing.active_children() == []
-
-
-def test_sampling_works_beside_other_threads():
-    """No process is forked from this one, which may have threads that hold locks."""
-    stop = threading.Event()
-    thread = threading.Thread(target=stop.wait)
-    thread.start()
-    try:
-        run_ensembles(Slow(2, seconds=0.0), SamplerOptions(seed=1, cores=2, **SHORT))
-    finally:
-        stop.set()
-        thread.join()
-
-
 def test_a_dead_worker_is_told():
     def kill(progress):
         if progress.steps == 20:
-            import multiprocessing
-
             for process in multiprocessing.active_children():
                 process.kill()
                 process.join()
