@@ -31,7 +31,7 @@ def check_names(
 def check_required(
     spec: ModelSpec, forward: ForwardModel, given: set[str], table: PowerSpectrum | None
 ) -> None:
-    """Refuse a model that lacks an input its forward model needs."""
+    """Refuse a model that lacks an input its forward model needs, or has one that would be ignored."""
     for entry in forward.required:
         if isinstance(entry, str):
             if entry not in given:
@@ -43,6 +43,12 @@ def check_required(
             raise InputError(
                 f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data"
             )
+    inert = [name for name in ROUGHNESS_INPUTS if name in given and name != "rms_height"]
+    if table is not None and inert:
+        raise InputError(
+            f"{spec.path}: '{inert[0]}' has no effect on a tabulated spectrum; of the roughness parameters only "
+            "rms_height can be given beside one"
+        )
     if (
         forward.uses_surface
         and table is None

@@ -333,7 +333,7 @@ def test_magnification_is_wavevector_over_the_smallest():
     nothing = np.empty(0)
     for name, value in by_wavevector.predict(nothing).items():
         assert_allclose(by_magnification.predict(nothing)[name], value, rtol=1e-13, err_msg=name)
-    with pytest.raises(InputError, match="wavevector and magnification|magnification and wavevector"):
+    with pytest.raises(InputError, match="magnification and wavevector exclude"):
         load_problem("contact-area", settings={"wavevector": "1e5 1/m", "magnification": "3"})
 
 
@@ -569,7 +569,7 @@ def test_rows_of_the_user_have_no_likelihood(tmp_path):
     rows = tmp_path / "rows.csv"
     rows.write_text("normal_force [N],nominal_contact_area [m^2]\n0.2,4e-4\n")
     problem = load_problem("finger-water", conditions=rows)
-    with pytest.raises(InputError, match="no observed|no data"):
+    with pytest.raises(InputError, match="no data"):
         problem.log_likelihood(problem.prior_medians())
 
 
