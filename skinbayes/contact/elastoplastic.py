@@ -161,5 +161,5 @@ def _difference(order: FloatArray, ratio: FloatArray, spread: FloatArray, reach:
         delta, centre = reach[row], order[column] / spread[row]
         v = delta[:, None] * _HALF_POINTS
         integrand = np.cosh(2 * centre[:, None] * v) * np.exp(-np.square(v)) * _HALF_WEIGHTS
-        direct[row, column] = 2 / np.sqrt(np.pi) * np.exp(-np.square(centre)) * delta * integrand.sum(axis=-1)
+        direct[row, column] = 4 / np.sqrt(np.pi) * np.exp(-np.square(centre)) * delta * integrand.sum(axis=-1)
     return direct
