@@ -1,0 +1,143 @@
+"""What is public is documented, annotated and, where it is physics, says its units and its source."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from inspect import cleandoc
+from typing import Any
+
+import pytest
+from source_tree import Definition, public_definitions
+
+import skinbayes
+
+DOCUMENTED = ("roughness", "contact", "friction", "statistics", "sampling", "diagnose", "files", "forward", "problem",
+              "fit", "comparison", "plot", "report", "units", "vocabulary", "errors", "arrays")  # fmt: skip
+
+UNIT = re.compile(
+    r"(?:^|\s)(1/m|1/s|Pa²?|Pa s|m|m\^-?\d|kg|s|N|N/m|m/s|rad|dimensionless|m\^\(\d − \w+\))(?=[,;.)\s]|$)|, K(?=[,;]|$)",
+    re.MULTILINE,
+)
+"""A unit as docstrings write it, apart from the K and N of shapes."""
+
+NUMERIC = {"ArrayLike", "FloatArray", "float", "int"}
+"""Words of an annotation that make an argument a number or an array of numbers."""
+
+
+def physics_callables() -> Iterator[tuple[str, Any]]:
+    """Functions and classes that the physics packages export."""
+    for package in ("roughness", "contact"):
+        module = import_module(f"skinbayes.{package}")
+        for name in module.__all__:
+            if callable(found := getattr(module, name)):
+                yield f"{package}.{name}", found
+    friction = import_module("skinbayes.friction")
+    yield "friction.friction_coefficient", friction.friction_coefficient
+
+
+PHYSICS = dict(physics_callables())
+FUNCTIONS = sorted(name for name, found in PHYSICS.items() if not isinstance(found, type))
+
+
+def entries(docstring: str) -> dict[str, str]:
+    """Name to description of the numpydoc sections Parameters and Attributes."""
+    found: dict[str, str] = {}
+    sections = re.split(r"\n([A-Z][a-z]+)\n-+\n", "\n" + cleandoc(docstring))
+    for title, body in zip(sections[1::2], sections[2::2], strict=True):
+        if title in ("Parameters", "Attributes"):
+            for block in re.split(r"\n(?=\S)", body):
+                names, _, text = block.partition(" : ")
+                found |= {name.strip(): text for name in names.split(",")}
+    return found
+
+
+def numeric_names(found: Any) -> list[str]:
+    """Arguments of a function, or fields of a class, that are numbers."""
+    annotations = {k: str(v) for k, v in found.__annotations__.items() if k != "return"}
+    return [
+        name
+        for name, text in annotations.items()
+        if NUMERIC & set(re.findall(r"\w+", text)) and name[0] != "_"
+    ]
+
+
+def test_top_level_names() -> None:
+    assert skinbayes.__all__ == ["Dataset", "Fit", "InputError", "Problem", "__version__", "compare", "load_dataset",
+                                 "load_fit", "load_problem", "sample"]  # fmt: skip
+    for name in skinbayes.__all__:
+        assert getattr(skinbayes, name) is not None
+    assert dir(skinbayes) == sorted(skinbayes.__all__)
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = skinbayes.no_such_name
+
+
+@pytest.mark.parametrize(
+    "package", ["roughness", "contact", "statistics", "diagnose", "files", "forward", "problem", "fit"]
+)
+def test_packages_list_what_they_export(package: str) -> None:
+    module = import_module(f"skinbayes.{package}")
+    assert module.__doc__
+    assert list(module.__all__) == sorted(
+        module.__all__, key=lambda name: (not name.isupper(), name)
+    ) or list(module.__all__) == sorted(module.__all__)
+    assert all(hasattr(module, name) for name in module.__all__)
+
+
+def test_everything_public_has_a_docstring() -> None:
+    bare = [name for name, node in public_definitions(DOCUMENTED) if not ast.get_docstring(node)]
+    assert not bare, "\n".join(bare)
+
+
+def unannotated(node: Definition) -> list[str]:
+    if isinstance(node, ast.ClassDef):
+        return []
+    arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+    extra = [argument for argument in (node.args.vararg, node.args.kwarg) if argument is not None]
+    missing = [a.arg for a in (*arguments, *extra) if a.annotation is None and a.arg not in ("self", "cls")]
+    return missing + (["return"] if node.returns is None else [])
+
+
+def test_everything_public_is_annotated() -> None:
+    wrong = {
+        name: left for name, node in public_definitions((*DOCUMENTED, "cli")) if (left := unannotated(node))
+    }
+    assert not wrong, wrong
+
+
+@pytest.mark.parametrize("name", sorted(PHYSICS))
+def test_physics_states_the_unit_of_every_number(name: str) -> None:
+    described = entries(PHYSICS[name].__doc__ or "")
+    for argument in numeric_names(PHYSICS[name]):
+        assert argument in described, f"{name}: '{argument}' is not described"
+        assert UNIT.search(described[argument]), f"{name}: no unit in '{argument} : {described[argument]}'"
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_physics_states_the_unit_of_its_result(name: str) -> None:
+    doc = cleandoc(PHYSICS[name].__doc__ or "")
+    if PHYSICS[name].__annotations__["return"] == "None":
+        assert "Raises\n" in doc, f"{name} returns nothing and raises nothing"
+        return
+    returns = re.search(r"\nReturns\n-+\n(.*?)(?:\n\n|\Z)", doc, re.DOTALL)
+    assert returns is not None, f"{name}: no section Returns"
+    # a named tuple states the units of its fields, which the test above holds
+    named = re.search(r"`(\w+)`", returns[1])
+    stated = named is not None and any(key.endswith(f".{named[1]}") for key in PHYSICS)
+    assert stated or UNIT.search(returns[1]), f"{name}: no unit in '{returns[1].strip()}'"
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_physics_names_its_source(name: str) -> None:
+    doc = PHYSICS[name].__doc__ or ""
+    assert re.search(r"\b10\.\d{4,9}/\S+", doc), f"{name}: no DOI"
+    assert re.search(r"\b(Eqs?\.|Sect\.|Fig\.|Chap\.) ?[\dA-Z]", doc), (
+        f"{name}: no equation, section or figure"
+    )
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_physics_shows_a_checked_example(name: str) -> None:
+    assert ">>> " in (PHYSICS[name].__doc__ or ""), f"{name}: no example"
