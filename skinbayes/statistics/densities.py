@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.statistics.priors import Prior
+from skinbayes.statistics.priors import Block, Prior
 from skinbayes.statistics.transforms import VectorTransform
 
 BatchFunction = Callable[[FloatArray], FloatArray]
@@ -70,11 +71,21 @@ class _Sum:
 class _Independent:
     priors: tuple[Prior, ...]
 
+    @cached_property
+    def _blocks(self) -> tuple[tuple[Block, slice | list[int]], ...]:
+        """Priors of one family together: one NumPy call for each family instead of one for each parameter."""
+        blocks = []
+        for family in dict.fromkeys(prior.family for prior in self.priors):
+            index = [i for i, prior in enumerate(self.priors) if prior.family == family]
+            columns = slice(None) if len(index) == len(self.priors) else index
+            blocks.append((Block.of([self.priors[i] for i in index]), columns))
+        return tuple(blocks)
+
     def __call__(self, theta: FloatArray) -> FloatArray:
-        total = np.zeros(theta.shape[0])
-        for column, prior in enumerate(self.priors):
-            total += prior.log_density(theta[:, column])
-        return total
+        terms = np.empty(theta.shape)
+        for block, columns in self._blocks:
+            terms[:, columns] = block.log_density(theta[:, columns])
+        return np.asarray(terms.sum(axis=1))
 
 
 @dataclass(frozen=True)

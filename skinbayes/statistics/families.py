@@ -18,6 +18,11 @@ from scipy import special
 from skinbayes.arrays import FloatArray
 
 Constants = tuple[float, ...]
+"""Numbers that a kernel needs."""
+
+Columns = tuple[float, ...] | tuple[FloatArray, ...]
+"""The same for several priors at once: one array for each number."""
+
 Arguments = tuple[float, ...]
 
 
@@ -60,7 +65,7 @@ class Family:
     description: str
     support: Callable[[Arguments], tuple[float, float]]
     constants: Callable[[Arguments], Constants]
-    kernel: Callable[[FloatArray, Constants], FloatArray]
+    kernel: Callable[[FloatArray, Columns], FloatArray]
     distribution: Callable[[Arguments], Any]
     closed: bool = True
 
@@ -78,7 +83,7 @@ _HALF_LOG_TWO_PI = 0.5 * log(2.0 * pi)
 _positive_axis = (0.0, inf)
 
 
-def _normal_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _normal_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     mean, inverse_sd, offset = constants
     z = (x - mean) * inverse_sd
     return offset - 0.5 * z * z
@@ -88,14 +93,14 @@ def _normal_constants(mean: float, sd: float) -> Constants:
     return (mean, 1.0 / sd, -log(sd) - _HALF_LOG_TWO_PI)
 
 
-def _lognormal_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _lognormal_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     mean, inverse_sd, offset = constants
     log_x = np.log(x)
     z = (log_x - mean) * inverse_sd
     return offset - 0.5 * z * z - log_x
 
 
-def _student_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _student_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     location, inverse_scale, power, offset = constants
     z = (x - location) * inverse_scale
     return offset - power * np.log1p(z * z)
@@ -108,29 +113,29 @@ def _student_constants(location: float, scale: float, degrees_of_freedom: float)
     return (location, 1.0 / (scale * sqrt(degrees_of_freedom)), half + 0.5, normalisation)
 
 
-def _flat_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _flat_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     return np.full_like(x, constants[0])
 
 
-def _loguniform_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _loguniform_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     return constants[0] - np.log(x)
 
 
-def _exponential_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _exponential_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     return constants[1] - x * constants[0]
 
 
-def _gamma_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _gamma_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     power, inverse_scale, offset = constants
     return power * np.log(x) - x * inverse_scale + offset
 
 
-def _beta_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _beta_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     power, other_power, offset = constants
     return power * np.log(x) + other_power * np.log1p(-x) + offset
 
 
-def _half_cauchy_kernel(x: FloatArray, constants: Constants) -> FloatArray:
+def _half_cauchy_kernel(x: FloatArray, constants: Columns) -> FloatArray:
     z = x * constants[0]
     return constants[1] - np.log1p(z * z)
 

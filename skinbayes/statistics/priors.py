@@ -116,9 +116,7 @@ class Prior:
         values = np.asarray(x, dtype=float, order="C")
         below, above = self._inner
         with np.errstate(all="ignore"):
-            density = FAMILIES[self.family].kernel(values, self._constants)
-            if self._log_mass:
-                density = density - self._log_mass
+            density = FAMILIES[self.family].kernel(values, self._constants) - self._log_mass
             return np.where((values > below) & (values < above), density, -inf)
 
     def cdf(self, x: ArrayLike) -> FloatArray:
@@ -235,6 +233,44 @@ class Prior:
         if self.upper < last:
             parts.append(f"cut off above {self.upper / factor:g}{suffix}")
         return ", ".join(parts)
+
+
+@dataclass(frozen=True)
+class Block:
+    """Priors of one family side by side, for log-densities of many columns at once.
+
+    Attributes
+    ----------
+    family : the family
+    constants : numbers that the kernel of the family needs, each of shape ``(k,)``
+    log_mass : logarithm of the mass left by truncation, shape ``(k,)``
+    below, above : the support lies strictly between them, shape ``(k,)``
+    """
+
+    family: str
+    constants: tuple[FloatArray, ...]
+    log_mass: FloatArray
+    below: FloatArray
+    above: FloatArray
+
+    @staticmethod
+    def of(priors: Sequence[Prior]) -> Block:
+        """The block of k priors, all of one family."""
+        return Block(
+            priors[0].family,
+            tuple(np.array(column) for column in zip(*(prior._constants for prior in priors), strict=True)),
+            np.array([prior._log_mass for prior in priors]),
+            np.array([prior._inner[0] for prior in priors]),
+            np.array([prior._inner[1] for prior in priors]),
+        )
+
+    def log_density(self, x: FloatArray) -> FloatArray:
+        """Log-density of each column of ``x`` (shape ``(B, k)``) under its prior, shape ``(B, k)``."""
+        # contiguous, because NumPy may take another code path for strided input, with another last bit
+        values = np.asarray(x, dtype=float, order="C")
+        with np.errstate(all="ignore"):
+            density = FAMILIES[self.family].kernel(values, self.constants) - self.log_mass
+            return np.where((values > self.below) & (values < self.above), density, -inf)
 
 
 def make_prior(family: str, arguments: Sequence[float]) -> Prior:
