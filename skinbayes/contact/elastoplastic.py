@@ -138,20 +138,27 @@ def _images(
     ratio: FloatArray, spread: FloatArray, reach: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Elastic, plastic, no contact for ``s < 0.75``, each shape ``(M,)``; ``reach`` is r/s."""
-    rest = 1 - ratio
-    plastic = _difference(_IMAGES[::2], ratio, spread, reach).sum(axis=-1)
-    non_contact = _difference(_IMAGES[::2], rest, spread, rest / spread).sum(axis=-1)
+    rest, gap = 1 - ratio, (1 - ratio) / spread
+    plastic = _difference(_IMAGES[::2], ratio, spread, reach, gap).sum(axis=-1)
+    non_contact = _difference(_IMAGES[::2], rest, spread, gap, reach).sum(axis=-1)
     # staying between the walls is symmetric about r = 1/2; the smaller distance avoids cancellation
-    near = np.minimum(ratio, rest)
-    near_reach = np.where(ratio <= rest, reach, rest / spread)
-    elastic = erf(near_reach) + (_SIGNS * _difference(_IMAGES, near, spread, near_reach)).sum(axis=-1)
-    return elastic, plastic, non_contact
+    low = ratio <= rest
+    near, near_reach, far_gap = np.minimum(ratio, rest), np.where(low, reach, gap), np.where(low, gap, reach)
+    terms = _SIGNS * _difference(_IMAGES, near, spread, near_reach, far_gap)
+    return erf(near_reach) + terms.sum(axis=-1), plastic, non_contact
 
 
-def _difference(order: FloatArray, ratio: FloatArray, spread: FloatArray, reach: FloatArray) -> FloatArray:
-    """``D_k = erfc((k − r)/s) − erfc((k + r)/s)`` to full relative accuracy, shape ``(M, len(order))``."""
+def _difference(
+    order: FloatArray, ratio: FloatArray, spread: FloatArray, reach: FloatArray, gap: FloatArray
+) -> FloatArray:
+    """``D_k = erfc((k − r)/s) − erfc((k + r)/s)`` to full relative accuracy, shape ``(M, len(order))``.
+
+    ``reach`` = r/s and ``gap`` = (1 − r)/s are given, as they keep their meaning where s vanishes.
+    """
     r, s, half_width = ratio[:, None], spread[:, None], reach[:, None]
-    direct = erfc((order - r) / s) - erfc((order + r) / s)
+    near_end = (order - r) / s
+    near_end[:, 0] = gap  # k = 1 comes first
+    direct = erfc(near_end) - erfc((order + r) / s)
     growth = 2 * (order / s) * half_width
     small = np.flatnonzero(growth <= 1)
     if small.size:

@@ -101,7 +101,9 @@ def test_response_agrees_with_a_solution_of_the_layer_problem(material):
 def test_soft_layer_on_stiff_ground(ratio):
     x = np.array([1e-3, 0.05, 0.5, 3.0])
     expected = [response_by_linear_system(2e4 * ratio, 2e4, 0.5, 0.5, value) for value in x]
-    np.testing.assert_allclose(surface_response(LayeredSkin(2e4 * ratio, 2e4, 0.5, 0.5, 1.0), x), expected, rtol=1e-9)
+    np.testing.assert_allclose(
+        surface_response(LayeredSkin(2e4 * ratio, 2e4, 0.5, 0.5, 1.0), x), expected, rtol=1e-9
+    )
 
 
 def test_no_layer_is_no_layer():
@@ -110,9 +112,7 @@ def test_no_layer_is_no_layer():
     )
 
 
-@given(
-    st.floats(1e-3, 1e7), st.floats(-0.9, 0.5), st.floats(-0.9, 0.5), st.floats(1e-7, 1e-3)
-)
+@given(st.floats(1e-3, 1e7), st.floats(-0.9, 0.5), st.floats(-0.9, 0.5), st.floats(1e-7, 1e-3))
 def test_limits_of_the_response(ratio, nu0, nu1, thickness):
     skin = LayeredSkin(2e4 * ratio, 2e4, nu0, nu1, thickness)
     static = reduced_modulus(2e4 * ratio, nu0) / reduced_modulus(2e4, nu1)

@@ -75,14 +75,20 @@ def test_textbook_slope_without_plateau():
     # s² = h² q0² H/(1 − H) [(q1/q0)^(2−2H) − 1]/[1 − (q1/q0)^(−2H)]
     height, hurst, q0, q1 = 2e-6, 0.7, 1e4, 1e9
     ratio = q1 / q0
-    expected = height * q0 * np.sqrt(hurst / (1 - hurst) * (ratio ** (2 - 2 * hurst) - 1) / (1 - ratio ** (-2 * hurst)))
+    expected = (
+        height
+        * q0
+        * np.sqrt(hurst / (1 - hurst) * (ratio ** (2 - 2 * hurst) - 1) / (1 - ratio ** (-2 * hurst)))
+    )
     assert rms_slope(SelfAffineSpectrum(height, hurst, q0, q0, q1)) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("slope", [1e-3, 0.1, 0.88, 2.8, 30.0, 1e4])
 def test_area_ratio_is_the_mean_area_element(slope):
     # the squared gradient of an isotropic Gaussian surface is exponentially distributed
-    excess = quad(lambda t: (np.sqrt(1 + slope**2 * t) - 1) * np.exp(-t), 0, np.inf, epsabs=0, epsrel=1e-11)[0]
+    excess = quad(lambda t: (np.sqrt(1 + slope**2 * t) - 1) * np.exp(-t), 0, np.inf, epsabs=0, epsrel=1e-11)[
+        0
+    ]
     assert total_area_ratio(slope) - 1 == pytest.approx(excess, rel=1e-8)
 
 
@@ -101,7 +107,10 @@ def test_paper_reference_has_the_slope_and_area_of_the_paper():
 
 def test_amplitude_at_large_wavevectors_is_shared_by_both_consistent_surfaces():
     q = [1e6, 1e8]
-    sharp, plateau = named_surface("paper_reference_sharp").power(q), named_surface("paper_reference").power(q)
+    sharp, plateau = (
+        named_surface("paper_reference_sharp").power(q),
+        named_surface("paper_reference").power(q),
+    )
     np.testing.assert_allclose(sharp, plateau, rtol=0.02)
 
 

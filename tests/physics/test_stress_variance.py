@@ -68,7 +68,9 @@ def test_variance_up_to_a_wavevector_agrees_with_quadrature():
         one = [x[i] for x in roughness], [x[i] for x in skin]
         np.testing.assert_allclose(found[i], [by_quadrature(*one, upper) for upper in q], rtol=1e-6)
     assert np.all(found[:, 0] == 0)
-    np.testing.assert_allclose(found[:, -1], stress_variance(SelfAffineSpectrum(*roughness), LayeredSkin(*skin)))
+    np.testing.assert_allclose(
+        found[:, -1], stress_variance(SelfAffineSpectrum(*roughness), LayeredSkin(*skin))
+    )
 
 
 def test_without_a_layer_the_slope_is_all_that_matters():

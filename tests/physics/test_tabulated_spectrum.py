@@ -62,7 +62,9 @@ def smooth(q):
 
 @pytest.mark.parametrize("upper", [None, 3e2, 7.7e4, 1e6, 4e8, 1e12])
 def test_quadrature_of_a_smooth_function_against_a_rough_table(upper):
-    rule = TabulatedSpectrum(ROUGH_Q, ROUGH_C).slope_quadrature(1.0, None if upper is None else np.array([upper]))
+    rule = TabulatedSpectrum(ROUGH_Q, ROUGH_C).slope_quadrature(
+        1.0, None if upper is None else np.array([upper])
+    )
     found = (rule.weights * smooth(rule.nodes)).sum(axis=-1) + rule.remainder
     expected = integrate(lambda q: q**4 * interpolate(q) * smooth(q), upper or np.inf)
     np.testing.assert_allclose(found, expected, rtol=2e-5)
@@ -71,7 +73,9 @@ def test_quadrature_of_a_smooth_function_against_a_rough_table(upper):
 def test_scale_multiplies_the_variance():
     table = TabulatedSpectrum(ROUGH_Q, ROUGH_C)
     scaled = TabulatedSpectrum(ROUGH_Q, ROUGH_C, scale=np.array([[4.0], [9.0], [-1.0]]))
-    np.testing.assert_allclose(rms_height(scaled)[:2, 0], rms_height(table) * np.array([2.0, 3.0]), rtol=1e-14)
+    np.testing.assert_allclose(
+        rms_height(scaled)[:2, 0], rms_height(table) * np.array([2.0, 3.0]), rtol=1e-14
+    )
     assert np.isnan(rms_height(scaled)[2, 0])
     assert scaled.power([1e4, 1e5]).shape == (3, 1, 2)
     np.testing.assert_allclose(scaled.power([1e4, 1e5])[0, 0], 4 * table.power([1e4, 1e5]), rtol=1e-14)
@@ -115,7 +119,9 @@ def test_profile_of_the_isotropic_spectrum_gives_the_profile_back():
         u_end = np.sqrt(1e14 - q * q)
         edges = np.unique(np.clip([1.0, np.sqrt(max(8e3**2 - q * q, 1.0)), q, 10 * q, u_end], 1.0, u_end))
         pieces = [
-            quad(lambda t: np.exp(t) * surface.power(np.hypot(q, np.exp(t))), np.log(a), np.log(b), epsrel=1e-8)[0]
+            quad(
+                lambda t: np.exp(t) * surface.power(np.hypot(q, np.exp(t))), np.log(a), np.log(b), epsrel=1e-8
+            )[0]
             for a, b in zip(edges[:-1], edges[1:], strict=True)
         ]
         return 2 * (sum(pieces) + surface.power(q))
