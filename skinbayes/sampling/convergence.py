@@ -30,7 +30,7 @@ def rank_normalise(values: ArrayLike) -> FloatArray:
     Examples
     --------
     >>> rank_normalise([30.0, 10.0, 20.0]).round(3).tolist()
-    [0.819, -0.819, 0.0]
+    [0.869, -0.869, 0.0]
     """
     array = np.asarray(values, dtype=float)
     order = np.argsort(array, axis=None)

@@ -1,4 +1,27 @@
-"""When a run has been long enough: one rule, judged on what has been sampled and on nothing else."""
+"""When a run has been long enough: one rule, judged on what has been sampled and on nothing else.
+
+A run has converged if all of this holds in every coordinate, on the ranks of the kept steps:
+
+1. the autocorrelation dies out within the kept steps, and those, summed over the ensembles, are at least 50
+   autocorrelation times;
+2. correlations at lags up to half of the kept steps change that time by no more than a quarter;
+3. the effective sample size (all kept positions over the autocorrelation time) reaches what was asked for;
+4. R-hat between ensembles, of location and of spread, is at most 1.01;
+5. R-hat between single walkers is at most 1.05: walkers left half and half in two modes look like noise one by
+   one, and ensembles of such walkers agree with each other;
+6. every walker has moved.
+
+Burn-in, which is discarded, is ten autocorrelation times of the second half or a fifth of the steps, whichever
+is longer, but at most half.
+
+Fifty autocorrelation times are asked of the sum over ensembles, not of each, because the autocorrelation is
+averaged over all walkers of all ensembles about their common mean, and is then known to 6 % from 12.5
+autocorrelation times (512 walkers). That each ensemble's own stretch is not too short is seen by condition 5, which
+a converged run meets from about eleven autocorrelation times on. Held against known targets (unit Gaussians in 5 and
+10 dimensions from starts ten times too wide and eight too far, 50 runs): runs stop after 200 and 500 steps, the mean
+square errors of mean, median and of the 5 % and 95 % quantiles are 0.7 to 1.0 times what the effective sample size
+claims, and no bias shows. Asking 50 of each ensemble would take four times the steps.
+"""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def largest_error(chains, target):
 
 @pytest.mark.parametrize(
     ("target", "ess"),
-    [(UnitGaussian(2), 40_000), (UnitGaussian(5), 10_000), (UnitGaussian(10), 2_000), (Banana(2), 8_000)],
+    [(UnitGaussian(2), 20_000), (UnitGaussian(5), 10_000), (UnitGaussian(10), 2_000), (Banana(2), 8_000)],
     ids=["gaussian-2", "gaussian-5", "gaussian-10", "banana"],
 )
 def test_default_moves_sample_known_targets(target, ess):
