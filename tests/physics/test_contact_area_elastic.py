@@ -1,5 +1,7 @@
 """Persson's area and the Yang–Persson correction against independent solutions and limits."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -67,14 +69,12 @@ def test_limits_of_the_area():
 def phi_by_quadrature(y, gamma):
     """∫ from 0 to y of dy/[γ + (1 − γ) erf²(1/√y)]."""
     low = min(y, 0.02)
-    edges = np.arange(np.log(low), np.log(y), 1.0).tolist() + [np.log(y)]
+    edges = [*np.arange(np.log(low), np.log(y), 1.0).tolist(), np.log(y)]
 
     def integrand(t):
         return np.exp(t) / (gamma + (1 - gamma) * erf(np.exp(-t / 2)) ** 2)
 
-    return low + sum(
-        quad(integrand, a, b, epsabs=0, epsrel=1e-12)[0] for a, b in zip(edges[:-1], edges[1:], strict=True)
-    )
+    return low + sum(quad(integrand, a, b, epsabs=0, epsrel=1e-12)[0] for a, b in itertools.pairwise(edges))
 
 
 @pytest.mark.parametrize("gamma", [1e-3, 0.05, 0.3, AREA_CORRECTION, 0.45, 0.9, 0.999])

@@ -1,5 +1,6 @@
 """Elastic and plastic contact area against a diffusion solver, decimal arithmetic and limits."""
 
+import itertools
 from decimal import Decimal, getcontext
 
 import numpy as np
@@ -212,9 +213,7 @@ def test_dry_skin_from_the_spectrum_to_the_plastic_share(upper, gamma):
         return np.pi * q**4 * surface.power(q) * effective_modulus(skin, q) ** 2
 
     edges = np.log([1e3, 6.345e3, 3e4, upper])
-    variance = sum(
-        quad(rate, a, b, epsabs=0, epsrel=1e-10)[0] for a, b in zip(edges[:-1], edges[1:], strict=True)
-    )
+    variance = sum(quad(rate, a, b, epsabs=0, epsrel=1e-10)[0] for a, b in itertools.pairwise(edges))
     solved = solve_ivp(
         lambda x, y: np.exp(x) * (gamma + (1 - gamma) * erf(pressure * np.exp(-y / 2)) ** 2) / np.exp(y),
         (np.log(1e4), np.log(variance)),

@@ -1,5 +1,7 @@
 """Stress variance against scipy.integrate.quad, batches against their rows."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -35,7 +37,7 @@ def by_quadrature(roughness, skin, upper=np.inf):
 
     def over(function, start, stop):
         edges = np.linspace(start, stop, max(2, int(np.ceil((stop - start) / 0.8)) + 1))
-        pairs = zip(edges[:-1], edges[1:], strict=True)
+        pairs = itertools.pairwise(edges)
         return sum(quad(function, a, b, epsabs=0, epsrel=1e-10)[0] for a, b in pairs if b > a)
 
     def full(function):

@@ -1,5 +1,7 @@
 """Tabulated spectra: interpolation, moments, quadrature weights, and the step from profiles to surfaces."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -28,7 +30,7 @@ def integrate(function, upper=np.inf, table_q=ROUGH_Q):
     edges = np.append(table_q[table_q < upper], min(upper, table_q[-1]))
     return sum(
         quad(lambda t: function(np.exp(t)), np.log(a), np.log(b), epsabs=0, epsrel=1e-11)[0]
-        for a, b in zip(edges[:-1], edges[1:], strict=True)
+        for a, b in itertools.pairwise(edges)
         if b > a * (1 + 1e-12)
     )
 
@@ -122,7 +124,7 @@ def test_profile_of_the_isotropic_spectrum_gives_the_profile_back():
             quad(
                 lambda t: np.exp(t) * surface.power(np.hypot(q, np.exp(t))), np.log(a), np.log(b), epsrel=1e-8
             )[0]
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
+            for a, b in itertools.pairwise(edges)
         ]
         return 2 * (sum(pieces) + surface.power(q))
 

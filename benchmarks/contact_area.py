@@ -1,0 +1,150 @@
+"""Relative contact area of 64 parameter vectors at full magnification: skinbayes against a loop of scipy.integrate.quad.
+
+Run with ``python benchmarks/contact_area.py [--json]``. Both sides start from the same parameters and end at A/A0; the loop
+is what one writes from Eqs. 2–4 of the paper, with the closed forms for the amplitude of the spectrum already in it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Callable
+from math import erf, exp, log, pi, sqrt
+
+import numpy as np
+from scipy.integrate import quad
+
+from skinbayes.contact import LayeredSkin, relative_contact_area, stress_variance
+from skinbayes.roughness import SelfAffineSpectrum
+
+COUNT = 64
+
+
+def parameter_vectors(seed: int = 1) -> dict[str, np.ndarray]:
+    """All parameters vary over the ranges of skin, log-uniform where they are scales; SI units."""
+    rng = np.random.default_rng(seed)
+
+    def scale(low: float, high: float) -> np.ndarray:
+        return np.exp(rng.uniform(log(low), log(high), COUNT))
+
+    return {
+        "rms_height": scale(5e-6, 8e-5),
+        "hurst_exponent": rng.uniform(0.6, 0.95, COUNT),
+        "wavevector_min": scale(5e2, 3e3),
+        "wavevector_rolloff": scale(4e3, 2e4),
+        "wavevector_max": scale(1e8, 1e10),
+        "young_modulus_layer": scale(1e6, 2e9),
+        "young_modulus_bulk": scale(5e3, 1e5),
+        "poisson_ratio_layer": rng.uniform(0.3, 0.5, COUNT),
+        "poisson_ratio_bulk": rng.uniform(0.3, 0.5, COUNT),
+        "layer_thickness": scale(1e-5, 1e-4),
+        "nominal_pressure": scale(1e3, 3e4),
+    }
+
+
+def batch(p: dict[str, np.ndarray], area_correction: float) -> np.ndarray:
+    """A/A0 of all vectors at once."""
+    spectrum = SelfAffineSpectrum(
+        p["rms_height"],
+        p["hurst_exponent"],
+        p["wavevector_min"],
+        p["wavevector_rolloff"],
+        p["wavevector_max"],
+    )
+    skin = LayeredSkin(
+        p["young_modulus_layer"],
+        p["young_modulus_bulk"],
+        p["poisson_ratio_layer"],
+        p["poisson_ratio_bulk"],
+        p["layer_thickness"],
+    )
+    return relative_contact_area(p["nominal_pressure"], stress_variance(spectrum, skin), area_correction)
+
+
+def one_by_quad(p: dict[str, float], tolerance: float) -> float:
+    """A/A0 of one vector, plain Persson theory, with scipy.integrate.quad over ln q."""
+    hurst, q0, q_r, q1 = (
+        p[name] for name in ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
+    )
+    e0, e1, nu0, nu1 = (
+        p[name]
+        for name in ("young_modulus_layer", "young_modulus_bulk", "poisson_ratio_layer", "poisson_ratio_bulk")
+    )
+    d = p["layer_thickness"]
+    area = (q_r**2 - q0**2) / 2 + q_r**2 * (1 - (q1 / q_r) ** (-2 * hurst)) / (2 * hurst)
+    plateau = p["rms_height"] ** 2 / (2 * pi * area)
+    contrast = e0 / (1 + nu0) / (e1 / (1 + nu1))
+    m = (contrast - 1) / (contrast + 3 - 4 * nu0)
+    n = 1 - 4 * (1 - nu0) / (1 + contrast * (3 - 4 * nu1))
+
+    def integrand(t: float) -> float:
+        q = exp(t)
+        x = q * d
+        e = exp(-2 * x)
+        response = (1 + 4 * m * x * e - m * n * e * e) / (1 - (m + n + 4 * m * x * x) * e + m * n * e * e)
+        spectrum = plateau if q < q_r else plateau * (q / q_r) ** (-2 * (1 + hurst))
+        return pi * q**4 * spectrum / response**2
+
+    parts = [
+        quad(integrand, log(a), log(b), epsabs=0, epsrel=tolerance, limit=400)[0]
+        for a, b in ((q0, q_r), (q_r, q1))
+    ]
+    return erf(p["nominal_pressure"] / (e0 / (1 - nu0**2) * sqrt(sum(parts))))
+
+
+def best_time(function: Callable[[], object], repeats: int, calls: int) -> float:
+    """Seconds a call, the best of ``repeats`` rounds."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        for _ in range(calls):
+            function()
+        times.append((time.perf_counter() - start) / calls)
+    return min(times)
+
+
+def run() -> dict[str, float]:
+    """Time both sides and compare their results."""
+    p = parameter_vectors()
+    vectors = [{name: float(values[i]) for name, values in p.items()} for i in range(COUNT)]
+    exact = np.array([one_by_quad(vector, 1e-10) for vector in vectors])
+    error = float(np.max(np.abs(batch(p, 1.0) / exact - 1)))
+    loop = best_time(lambda: [one_by_quad(vector, 1e-4) for vector in vectors], 3, 1)
+    plain = best_time(lambda: batch(p, 1.0), 100, 10)
+    corrected = best_time(lambda: batch(p, 0.42), 100, 10)
+    return {
+        "vectors": COUNT,
+        "quad_loop_us_per_vector": loop / COUNT * 1e6,
+        "skinbayes_us_per_vector": plain / COUNT * 1e6,
+        "skinbayes_corrected_us_per_vector": corrected / COUNT * 1e6,
+        "ratio": loop / plain,
+        "largest_relative_error": error,
+    }
+
+
+def main() -> None:
+    """Print a small table, or JSON."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
+    arguments = parser.parse_args()
+    result = run()
+    if arguments.json:
+        print(json.dumps(result, indent=2))
+        return
+    print(f"A/A0 of {COUNT} parameter vectors at full magnification")
+    print(
+        f"  loop of scipy.integrate.quad (tolerance 1e-4)  {result['quad_loop_us_per_vector']:10.1f} us per vector"
+    )
+    print(
+        f"  skinbayes, plain Persson                       {result['skinbayes_us_per_vector']:10.2f} us per vector"
+    )
+    print(
+        f"  skinbayes, Yang-Persson correction             {result['skinbayes_corrected_us_per_vector']:10.2f} us per vector"
+    )
+    print(f"  ratio (plain)                                  {result['ratio']:10.0f}")
+    print(f"  largest relative error of A/A0                 {result['largest_relative_error']:10.1e}")
+
+
+if __name__ == "__main__":
+    main()
