@@ -1,0 +1,16 @@
+"""Figures of a fit. Each function takes a fit and returns a matplotlib ``Figure`` that belongs to no window."""
+
+from skinbayes.plot.corner_plot import plot_corner
+from skinbayes.plot.predictive import plot_predictive, plot_prior_predictive
+from skinbayes.plot.prior_posterior import plot_prior_posterior
+from skinbayes.plot.profile import plot_profile
+from skinbayes.plot.trace import plot_trace
+
+__all__ = [
+    "plot_corner",
+    "plot_predictive",
+    "plot_prior_posterior",
+    "plot_prior_predictive",
+    "plot_profile",
+    "plot_trace",
+]

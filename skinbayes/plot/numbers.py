@@ -1,0 +1,90 @@
+"""Numbers as people read them: the one place where figures and pages round."""
+
+from __future__ import annotations
+
+from math import floor, isfinite, log10
+
+from skinbayes.units import format_quantity, parse_quantity
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number with a few significant digits and no computer notation.
+
+    Examples
+    --------
+    >>> number(2412.3), number(0.76543), number(1.3586e-4), number(float("inf")), number(120000.0)
+    ('2410', '0.765', '1.36 × 10⁻⁴', 'infinite', '1.2 × 10⁵')
+    """
+    if not isfinite(value):
+        return "not a number" if value != value else "infinite" if value > 0 else "−infinite"
+    rounded = float(f"{value:.{digits}g}")
+    if rounded == 0.0:
+        return "0"
+    exponent = floor(log10(abs(rounded)) + 1e-12)
+    if -3 <= exponent < 5:
+        return f"{rounded:.{max(0, digits - 1 - exponent)}f}".rstrip("0").rstrip(".") if exponent < digits - 1 \
+            else f"{rounded:.0f}"  # fmt: skip
+    mantissa = f"{rounded / 10.0**exponent:.{digits}g}"
+    power = f"10{str(exponent).translate(_RAISED)}"
+    return power if mantissa == "1" else f"{mantissa} × {power}"
+
+
+def prefix_of(typical: float, unit: str) -> tuple[float, str]:
+    """SI value and name of the unit in which a typical value reads well.
+
+    Examples
+    --------
+    >>> prefix_of(1.5e7, "Pa"), prefix_of(0.3, "1"), prefix_of(3.8e-4, "m^2")
+    ((1000000.0, 'MPa'), (1.0, ''), (1e-06, 'mm²'))
+    """
+    if unit == "1" or not isfinite(typical) or typical == 0.0:
+        return 1.0, "" if unit == "1" else unit_text(unit)
+    shown = format_quantity(typical, unit, digits=3).partition(" ")[2]
+    factor = 1.0 if shown == unit else parse_quantity(f"1 {shown}", unit, where="unit shown")
+    return factor, unit_text(shown)
+
+
+def unit_text(unit: str) -> str:
+    """A unit with raised powers: ``"mm²"``, ``"1/m"``."""
+    return unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
+
+
+def quantity(value: float, unit: str, digits: int = 3) -> str:
+    """An SI value with a unit that suits it.
+
+    Examples
+    --------
+    >>> quantity(14.82e6, "Pa"), quantity(float("inf"), "Pa"), quantity(0.78, "1"), quantity(1e9, "1/m")
+    ('14.8 MPa', 'infinite', '0.78', '10⁹ 1/m')
+    """
+    if not isfinite(value):
+        return number(value)
+    factor, name = prefix_of(value, unit)
+    return f"{number(value / factor, digits)} {name}".strip()
+
+
+def interval(low: float, high: float, unit: str, typical: float | None = None, joint: str = " to ") -> str:
+    """Two SI values in one unit, which is said once.
+
+    Examples
+    --------
+    >>> interval(7.811e6, 28.32e6, "Pa"), interval(2.4e8, 2.4e9, "Pa", typical=7.7e8), interval(1e-5, 3e-4, "1")
+    ('7.81 to 28.3 MPa', '240 to 2400 MPa', '10⁻⁵ to 3 × 10⁻⁴')
+    """
+    factor, name = prefix_of(high if typical is None else typical, unit)
+    return f"{number(low / factor)}{joint}{number(high / factor)} {name}".strip()
+
+
+def percent(share: float) -> str:
+    """A share in percent: ``"45 %"``, ``"0.4 %"``, ``"less than 0.1 %"``.
+
+    Examples
+    --------
+    >>> percent(0.4512), percent(0.00412), percent(0.0002), percent(0.0), percent(1.0)
+    ('45 %', '0.41 %', 'less than 0.1 %', '0 %', '100 %')
+    """
+    if 0.0 < share < 1e-3:
+        return "less than 0.1 %"
+    return f"{number(100.0 * share, 2)} %"

@@ -1,0 +1,116 @@
+"""Axes in units that people use, logarithmic where values span decades."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.plot.numbers import prefix_of
+
+if TYPE_CHECKING:
+    from matplotlib.axis import Axis
+
+WIDE = 4.0
+"""Ratio of the ends of what is shown above which an axis is logarithmic."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How values of one quantity are shown.
+
+    Attributes
+    ----------
+    factor : SI value of one unit shown
+    unit : unit shown, ``""`` for numbers without dimension
+    logarithmic : whether the axis is logarithmic
+    """
+
+    factor: float
+    unit: str
+    logarithmic: bool
+
+    def shown(self, values: Any) -> FloatArray:
+        """Values in the unit shown."""
+        return np.asarray(values, dtype=float) / self.factor
+
+    def label(self, symbol: str) -> str:
+        """Axis label: symbol and unit."""
+        return f"{symbol} [{self.unit}]" if self.unit else symbol
+
+
+def scale_for(unit: str, *groups: FloatArray, typical: float | None = None) -> Scale:
+    """Choose unit and kind of axis for the central 98 % of each of the groups of values (SI)."""
+    finite = [np.asarray(g)[np.isfinite(g)] for g in groups]
+    finite = [g for g in finite if g.size]
+    if not finite:
+        return Scale(1.0, "" if unit == "1" else unit, False)
+    low = min(float(np.quantile(g, 0.01)) for g in finite)
+    high = max(float(np.quantile(g, 0.99)) for g in finite)
+    factor, name = prefix_of(typical if typical is not None else float(np.median(finite[-1])), unit)
+    positive = min(float(g.min()) for g in finite) > 0.0
+    return Scale(factor, name, bool(positive and low > 0.0 and high / low > WIDE))
+
+
+def round_values(low: float, high: float, most: int = 4) -> list[float]:
+    """Round numbers inside a positive range, evenly spaced on a logarithmic axis.
+
+    Examples
+    --------
+    >>> round_values(2.0, 60.0), round_values(0.5, 400.0)
+    ([2.0, 5.0, 10.0, 20.0, 50.0], [1.0, 10.0, 100.0])
+    """
+    decades = range(int(np.floor(np.log10(low))) - 1, int(np.ceil(np.log10(high))) + 2)
+    best: list[float] = []
+    options = ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0))
+    for mantissas in options:
+        values = [float(f"{m}e{d}") for d in decades for m in mantissas]
+        inside = [v for v in values if low * 0.999 <= v <= high * 1.001]
+        if len(inside) > most + 1 and best:
+            break
+        best = inside if len(inside) >= len(best) else best
+    while len(best) > most + 1:
+        best = best[::2]
+    return best
+
+
+def plain_number(value: float) -> str:
+    """A tick label: ``"0.05"``, ``"200"``, ``"3·10⁻⁵"`` with the power set as such.
+
+    Examples
+    --------
+    >>> plain_number(0.05), plain_number(200.0), plain_number(1e-5)
+    ('0.05', '200', '$10^{-5}$')
+    """
+    return f"{value:g}" if value == 0.0 or 1e-3 <= abs(value) < 1e5 else power_number(value)
+
+
+def power_number(value: float) -> str:
+    """A tick label of an axis that spans many decades.
+
+    Examples
+    --------
+    >>> power_number(1.0), power_number(10.0), power_number(1e5), power_number(3e-4)
+    ('1', '10', '$10^{5}$', '$3·10^{-4}$')
+    """
+    if 0.5 < value < 50.0:
+        return f"{value:g}"
+    exponent = int(np.floor(np.log10(abs(value)) + 1e-9))
+    mantissa = float(f"{value / 10.0**exponent:.3g}")
+    return f"$10^{{{exponent}}}$" if mantissa == 1.0 else f"${mantissa:g}·10^{{{exponent}}}$"
+
+
+def ticks(axis: Axis, scale: Scale, low: float, high: float, most: int = 4) -> None:
+    """Put a few round numbers on an axis whose limits are ``low`` and ``high`` in the unit shown."""
+    from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
+
+    written = plain_number
+    if scale.logarithmic:
+        axis.set_major_locator(FixedLocator(round_values(low, high, most)))
+        axis.set_minor_formatter(NullFormatter())
+        written = power_number if high / low > 3e4 else plain_number
+    else:
+        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: written(value)))

@@ -1,0 +1,68 @@
+"""Names of quantities as figures and pages show them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from skinbayes.vocabulary import LABELS, QUANTITIES
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+
+SUBSCRIPT = re.compile(r"(?<![^\W_])([^\W\d_][\u0300-\u036f]?)(?:_(\w+)|(\d))(?!\w)")
+"""A letter (with an accent) and its subscript: ``σ_f``, ``E0``, ``A_pl``."""
+
+_SPOKEN = (
+    (re.compile(r"^young_modulus_"), "Young's modulus of the "),
+    (re.compile(r"^poisson_ratio_"), "Poisson ratio of the "),
+    (re.compile(r"^contact_angle_"), "contact angle on "),
+    (re.compile(r"^wavevector_(min|max|rolloff)$"), r"\1 wavevector"),
+    (re.compile(r"^min wavevector"), "smallest wavevector"),
+    (re.compile(r"^max wavevector"), "largest wavevector"),
+    (re.compile(r"^rolloff wavevector"), "roll-off wavevector"),
+    (re.compile(r"^relative_contact_area_(elastic|plastic)$"), r"\1 relative contact area"),
+    (re.compile(r"_"), " "),
+)
+
+
+def figure_text(text: str) -> str:
+    """Text for a figure, with subscripts set as such; a dollar sign stays one.
+
+    Examples
+    --------
+    >>> figure_text("σ_f/(E0 s)"), figure_text("costs $5")
+    ('$\\\\mathregular{σ_{f}}$/($\\\\mathregular{E_{0}}$ s)', 'costs \\\\$5')
+    """
+    pieces, end = [], 0
+    for match in SUBSCRIPT.finditer(text):
+        pieces.append(text[end : match.start()].replace("$", r"\$"))
+        letter, below = match.group(1), match.group(2) or match.group(3)
+        plain = letter.isalpha() and len(letter) == 1 and "_" not in below
+        pieces.append(
+            rf"$\mathregular{{{letter}_{{{below}}}}}$" if plain and "$" not in text else match.group(0)
+        )
+        end = match.end()
+    return "".join([*pieces, text[end:].replace("$", r"\$")])
+
+
+def spoken_name(label: str) -> str:
+    """A parameter label as people say it.
+
+    Examples
+    --------
+    >>> spoken_name("young_modulus_layer[wet]"), spoken_name("frictional_shear_stress")
+    ("Young's modulus of the layer (wet)", 'frictional shear stress')
+    """
+    name, _, level = label.partition("[")
+    if name in QUANTITIES or name in LABELS:
+        for pattern, replacement in _SPOKEN:
+            name = pattern.sub(replacement, name)
+    else:
+        name = name.replace("_", " ")
+    return f"{name} ({level.removesuffix(']')})" if level else name
+
+
+def figure_symbol(fit: Fit, label: str) -> str:
+    """Symbol of a parameter for a figure."""
+    return figure_text(fit.symbol(label))

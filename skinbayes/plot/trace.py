@@ -1,0 +1,67 @@
+"""Draws against time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.plot.scales import scale_for, ticks
+from skinbayes.plot.style import SERIES, WIDTH, look, new_figure, set_title
+from skinbayes.plot.symbols import figure_symbol
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from skinbayes.fit import Fit
+
+POINTS = 250
+"""Draws shown of each ensemble."""
+
+
+def plot_trace(fit: Fit) -> Figure:
+    """Draw the draws of each free parameter against time, one ensemble beside the other.
+
+    Parameters
+    ----------
+    fit : any fit
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One row for each parameter. Ensembles that sampled the same distribution fill the same band (dashed lines: 5 %,
+        50 % and 95 % of all draws) from the first draw to the last.
+    """
+    names = fit.names
+    chains, length = (fit.groups["posterior"].sizes[d] for d in ("chain", "draw"))
+    step = max(1, length // POINTS)
+    shown = len(range(0, length, step))
+    with look():
+        figure = new_figure(WIDTH, 1.0 + 1.05 * len(names))
+        axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+        for ax, label in zip(axes, names, strict=True):
+            draws = fit.draws(label)
+            scale = scale_for(fit.unit(label), draws)
+            values = scale.shown(draws).reshape(chains, length)
+            if scale.logarithmic:
+                ax.set_yscale("log")
+            for chain in range(chains):
+                time = chain * shown + np.arange(shown)
+                ax.plot(
+                    time, values[chain, ::step], color=SERIES[chain % len(SERIES)], linewidth=0.5, marker=".",
+                    markersize=2.0,
+                )  # fmt: skip
+            for level in np.quantile(values, [0.05, 0.5, 0.95]):
+                ax.axhline(level, color="#1A1A1A", linewidth=0.8, linestyle=(0, (4, 3)))
+            for boundary in range(1, chains):
+                ax.axvline(boundary * shown - 0.5, color="#B0B0B0", linewidth=0.8)
+            low, high = float(values.min()), float(values.max())
+            if high > low:
+                ticks(ax.yaxis, scale, low, high, most=3)
+            ax.set_ylabel(scale.label(figure_symbol(fit, label)).replace(" [", "\n["))
+        axes[-1].set_xlim(-0.5, chains * shown - 0.5)
+        axes[-1].set_xticks([(i + 0.5) * shown for i in range(chains)], [f"{i + 1}" for i in range(chains)])
+        axes[-1].tick_params(axis="x", length=0)
+        axes[-1].set_xlabel("ensemble; within each, time runs to the right")
+        set_title(figure, fit, "Draws against time")
+    return figure

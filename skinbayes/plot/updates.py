@@ -1,0 +1,31 @@
+"""What the data changed about each parameter of a fit, for figures and pages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from skinbayes.diagnose import PriorUpdate
+    from skinbayes.fit import Fit
+
+
+def fit_updates(fit: Fit) -> dict[str, PriorUpdate]:
+    """Prior against posterior of each free parameter, by label.
+
+    Spreads are compared in the coordinates of the sampler: logarithms of positive parameters. Without the problem the
+    support of a parameter is not known, and all whose draws are positive count as positive.
+    """
+    from skinbayes.diagnose import prior_updates
+    from skinbayes.statistics.transforms import VectorTransform
+
+    before, after = fit.theta("prior"), fit.theta()
+    if fit.problem is not None:
+        transform = fit.problem.target().transform
+    else:
+        positive = (before > 0.0).all(axis=0) & (after > 0.0).all(axis=0)
+        transform = VectorTransform.for_supports(
+            [(0.0, np.inf) if is_positive else (-np.inf, np.inf) for is_positive in positive]
+        )
+    return {update.name: update for update in prior_updates(fit.names, before, after, transform)}

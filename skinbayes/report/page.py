@@ -1,0 +1,144 @@
+"""Put a page together and write it."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinbayes.errors import InputError
+from skinbayes.plot.symbols import spoken_name
+from skinbayes.report import quality, sentences, tables
+from skinbayes.report.figures import pictures
+from skinbayes.report.markup import links, symbols
+from skinbayes.vocabulary import lookup
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+    from skinbayes.problem.check import CheckReport
+
+
+def write_report(fit: Fit, path: Path) -> Path:
+    """Write one self-contained HTML page about a fit.
+
+    Figures are inside the page; nothing is loaded from anywhere and no script runs. Everything that comes from data
+    files, model files and labels is escaped. The file appears whole or not at all.
+
+    Parameters
+    ----------
+    fit : any fit; without its problem the page has neither the curves of the model nor the check of what data can tell
+    path : the file to write
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    InputError
+        The folder does not exist or cannot be written.
+    """
+    path = Path(path)
+    page = render(fit)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        temporary.write_text(page, encoding="utf-8")
+        temporary.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+    return path
+
+
+def render(fit: Fit) -> str:
+    """The page as text."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("skinbayes.report", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"symbols": symbols, "links": links}
+    return environment.get_template("page.html").render(context(fit))
+
+
+def context(fit: Fit) -> dict[str, Any]:
+    """Everything the template shows, as text."""
+    check = None if fit.problem is None else fit.problem.check()
+    shown, folded = tables.derived_rows(fit)
+    return {
+        "title": str(fit.provenance["title"]) or fit.name,
+        "name": fit.name,
+        "description": str(fit.provenance["description"]),
+        "converged": fit.converged,
+        "missing": quality.missing(fit),
+        "setting": _setting(fit),
+        "learnt": sentences.learnt(fit),
+        "products": sentences.learnt_products(fit),
+        "not_learnt": sentences.not_learnt(fit),
+        "ridges": sentences.posterior_ridges(fit),
+        "combinations": _combinations(fit, check),
+        "parameters": tables.parameter_rows(fit),
+        "derived": shown,
+        "derived_folded": folded,
+        "pictures": pictures(fit),
+        "agreement": quality.agreement(fit),
+        "convergence": quality.convergence(fit),
+        "assumptions": _assumptions(fit, check),
+        "fixed": tables.fixed_rows(fit),
+        "data": data_origin(fit),
+        "settings": tables.settings(fit),
+        "model_text": str(fit.provenance["model_text"]),
+        "references": fit.cite(),
+    }
+
+
+def _setting(fit: Fit) -> str:
+    observable = str(fit.provenance["observable"])
+    known = lookup(observable)
+    symbol = f" {known.symbol}" if known else ""
+    count = fit.groups["observed_data"].sizes["row"]
+    values = "1 value" if count == 1 else f"{count} values"
+    parameters = "1 parameter" if len(fit.names) == 1 else f"{len(fit.names)} parameters"
+    return f"{values} of the {spoken_name(observable)}{symbol} informed {parameters}."
+
+
+def _combinations(fit: Fit, check: CheckReport | None) -> list[str]:
+    if check is None or check.identifiability is None:
+        return []
+    return [sentences.with_symbols(fit, sentence) for sentence in check.identifiability.sentences()]
+
+
+def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
+    if check is None:
+        return [
+            "The model file or the data are gone, so that their assumptions could not be checked again for this page."
+        ]
+    return [sentences.with_symbols(fit, sentence) for sentence in (*check.setup, *check.predictions)]
+
+
+def data_origin(fit: Fit) -> dict[str, Any]:
+    """Where the data come from; what a file without provenance does not say is empty."""
+    known = fit.provenance["data"]
+    dataset = None if fit.problem is None else fit.problem.dataset
+    origin = None if dataset is None else dataset.provenance
+    return {
+        "key": str(known.get("key", "")),
+        "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
+        "sha256": str(known.get("sha256", "")),
+        "title": str(known.get("title", "")),
+        "doi": [str(doi) for doi in known.get("doi", [])],
+        "licence": str(known.get("licence", "")),
+        "authors": ", ".join(origin.authors) if origin else "",
+        "attribution": (origin.attribution or "") if origin else "",
+        "where": origin.where if origin else "",
+        "how_read": origin.how_read if origin else "",
+        "transformation": origin.transformation if origin else "",
+        "spread": origin.spread if origin else "",
+        "caveats": list(origin.caveats) if origin else [],
+    }

@@ -1,0 +1,143 @@
+"""What a fit says, in sentences. Plain text; nothing here knows HTML."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.diagnose import ridges
+from skinbayes.plot.numbers import interval, number, quantity
+from skinbayes.plot.symbols import spoken_name
+from skinbayes.plot.updates import fit_updates
+from skinbayes.vocabulary import QUANTITIES
+
+if TYPE_CHECKING:
+    from skinbayes.diagnose import PriorUpdate
+    from skinbayes.fit import Fit
+
+
+def title_name(fit: Fit, label: str) -> str:
+    """Name and symbol of a parameter or derived quantity, for the start of a sentence: ``"Yield stress (dry), σ_Y (dry)"``."""
+    spoken, symbol = spoken_name(label), fit.symbol(label)
+    spoken = spoken[:1].upper() + spoken[1:]
+    level = re.search(r"\[(.*)\]$", label)
+    plain = symbol.removesuffix(f" ({level.group(1)})") if level else symbol
+    if plain in (label, spoken):
+        return spoken
+    head = spoken.removesuffix(f" ({level.group(1)})") if level else spoken
+    return f"{head} {plain}" + (f" ({level.group(1)})" if level else "")
+
+
+def with_symbols(fit: Fit, text: str) -> str:
+    """Replace parameter labels by symbols, and other names of the vocabulary by words."""
+    known = {label: fit.symbol(label) for label in (*fit.names, *named_products(fit))}
+    known |= {name: spoken_name(name) for name in QUANTITIES if "_" in name and name not in known}
+    pattern = "|".join(re.escape(name) for name in sorted(known, key=len, reverse=True))
+    return re.sub(rf"(?<!\w)(?:{pattern})(?![\w\[])", lambda m: known[m.group()], text)
+
+
+def named_products(fit: Fit) -> tuple[str, ...]:
+    """Labels of the derived quantities that the model file names itself."""
+    return tuple(label for label in fit.derived_labels() if label.partition("[")[0] not in QUANTITIES)
+
+
+def value_sentence(fit: Fit, label: str) -> str:
+    """Median and 90 % interval: ``"14.8 MPa; with 90 % probability between 7.81 and 28.3 MPa"``."""
+    low, middle, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
+    unit = fit.unit(label)
+    return (
+        f"{quantity(middle, unit)}; with 90 % probability "
+        f"between {interval(low, high, unit, typical=middle, joint=' and ')}"
+    )
+
+
+def narrowing_sentence(fit: Fit, label: str) -> str:
+    """How much narrower the 90 % interval is than the prior's, as factors where all values are positive."""
+    after = np.quantile(fit.draws(label), [0.05, 0.95])
+    before = np.quantile(fit.draws(label, "prior"), [0.05, 0.95])
+    unit = fit.unit(label)
+    if before[0] > 0.0 and after[0] > 0.0:
+        return (
+            f"The upper end of this interval is {number(after[1] / after[0], 2)} times the lower one; "
+            f"before the data it was {number(before[1] / before[0], 2)} times."
+        )
+    return (
+        f"This interval is {quantity(after[1] - after[0], unit, 2)} wide; "
+        f"before the data it was {quantity(before[1] - before[0], unit, 2)}."
+    )
+
+
+def learnt(fit: Fit) -> list[str]:
+    """One entry for each parameter that the data updated, most informed first, then the model's named products."""
+    updates = [u for u in fit_updates(fit).values() if u.verdict != "not updated"]
+    updates.sort(key=lambda update: -update.contraction)
+    said = []
+    for update in updates:
+        said.append(
+            f"{title_name(fit, update.name)}: {value_sentence(fit, update.name)}. {_strength(update)} "
+            f"{narrowing_sentence(fit, update.name)}"
+        )
+        if update.verdict == "contradicted":
+            said[-1] += " " + _contradiction(update)
+    return said
+
+
+def learnt_products(fit: Fit) -> list[str]:
+    """One entry for each combination that the model file names."""
+    said = []
+    for label in named_products(fit):
+        meaning = str(fit.groups["posterior"][label.partition("[")[0]].attrs.get("long_name", ""))
+        explained = f" ({meaning})" if meaning else ""
+        said.append(
+            f"{title_name(fit, label)}{explained}: {value_sentence(fit, label)}. {narrowing_sentence(fit, label)}"
+        )
+    return said
+
+
+def _strength(update: PriorUpdate) -> str:
+    left = np.sqrt(max(0.0, 1.0 - update.contraction))
+    if left < 0.25:
+        return "The data say much about it."
+    if left < 0.7:
+        return "The data say something about it."
+    return "The data narrow it a little; most of this is still the prior."
+
+
+def _contradiction(update: PriorUpdate) -> str:
+    side = "below" if update.prior_quantile < 0.5 else "above"
+    return (
+        f"The data contradict the prior: half of the posterior lies {side} values that the prior held to be "
+        "almost impossible. Question the prior, the model or the data before using the number."
+    )
+
+
+def not_learnt(fit: Fit) -> list[str]:
+    """One entry for each parameter about which only the prior speaks."""
+    return [
+        f"{title_name(fit, update.name)}: only the prior speaks. {value_sentence(fit, update.name)}, as before the data."
+        for update in fit_updates(fit).values()
+        if update.verdict == "not updated"
+    ]
+
+
+def posterior_ridges(fit: Fit) -> list[str]:
+    """Pairs of parameters that are known together much better than apart."""
+    said = []
+    for ridge in ridges(fit.names, fit.theta()):
+        first, second = fit.symbol(ridge.first), fit.symbol(ridge.second)
+        start = (
+            f"{first} and {second} are known together better than apart (correlation {ridge.correlation:.2f})"
+        )
+        if not ridge.logarithmic:
+            said.append(f"{start}.")
+            continue
+        exponent = number(abs(ridge.exponent), 2)
+        raised = first if exponent == "1" else f"{first}^{exponent}"
+        together = f"{second} / {raised}" if ridge.exponent > 0.0 else f"{second} · {raised}"
+        spread = number(float(np.exp(1.645 * ridge.spread)), 2)
+        said.append(
+            f"{start}: with 90 % probability {together} is within a factor {spread} of its typical value."
+        )
+    return said
