@@ -230,6 +230,6 @@ def find_dataset(
     if is_file:
         return path.stem, path, None
     raise InputError(
-        f"data set {quoted(str(name_or_path))}: neither a shipped data set nor an existing file; shipped are "
+        f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file; shipped are "
         f"{', '.join(shipped)}.{_suggestions(name_or_path, shipped)}"
     )

@@ -71,10 +71,13 @@ def find_model(name: str | Path) -> Path:
     if text in shipped:
         return shipped_folder("models") / f"{text}.toml"
     path = Path(text)
-    if path.exists() or path.suffix == ".toml":
-        return path
+    try:
+        if text.isprintable() and (path.exists() or path.suffix == ".toml"):
+            return path
+    except OSError:  # a name that no file can have
+        pass
     raise InputError(
-        f"no model '{text}'.{suggestions(text, list(shipped))} Shipped: {', '.join(shipped)}; or give the path of a TOML file"
+        f"no model {text[:200]!r}.{suggestions(text[:80], list(shipped))} Shipped: {', '.join(shipped)}; or give the path of a TOML file"
     )
 
 
@@ -101,6 +104,7 @@ def load_model(name: str | Path) -> ModelSpec:
         line = line_of(text, keys)
         return f"{path}{f', line {line}' if line else ''}: {'.'.join(keys)}"
 
+    _check_printable(content, where)
     parameters = _read_parameters(block.parameters, "parameters", where, _parameter_quantity)
     data, noise = block.data, block.noise
     noise_name: str | None = None
@@ -135,6 +139,19 @@ def load_model(name: str | Path) -> ModelSpec:
             key: _read_grid(key, grid, where("conditions", key)) for key, grid in block.conditions.items()
         },
     )
+
+
+def _check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
+    """Refuse control characters: what a model file says is written to terminals, pages and other files."""
+    if isinstance(item, dict):
+        for key, value in item.items():
+            _check_printable(key, where, keys)
+            _check_printable(value, where, (*keys, key))
+    elif isinstance(item, list):
+        for value in item:
+            _check_printable(value, where, keys)
+    elif isinstance(item, str) and not "".join(item.split()).isprintable():
+        raise InputError(f"{where(*keys)}: found {item[:60]!r}; expected printable characters only")
 
 
 def _parameter_quantity(name: str, where: str) -> Quantity:

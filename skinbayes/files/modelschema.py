@@ -6,6 +6,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+LARGEST_POWER = 100
+
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
@@ -52,6 +54,11 @@ class DerivedBlock(_Strict):
     def _not_empty(self) -> DerivedBlock:
         if not self.product:
             raise ValueError("'product' names no factor")
+        for factor, power in self.product.items():
+            if not abs(power) <= LARGEST_POWER:
+                raise ValueError(
+                    f"power {power} of '{factor}'; expected a finite number up to {LARGEST_POWER}"
+                )
         return self
 
 

@@ -122,6 +122,10 @@ def _parse_prior(quantity: Quantity, family: str, raw: Any, where: str, unit: st
             f"{where}: found {len(arguments)} arguments; expected {len(expected)}: "
             f"[{', '.join(argument.name for argument in expected)}]"
         )
+    if FAMILIES[family].dimensionless and unit != "1":
+        raise InputError(
+            f"{where}: {family} is for dimensionless parameters; {quantity.name} has the unit {unit}"
+        )
     numbers = [
         parse_quantity(given, unit if argument.kind == "value" else "1", where=f"{where} ({argument.name})")
         for given, argument in zip(arguments, expected, strict=True)

@@ -8,7 +8,10 @@ from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
 from skinbayes.problem.inputs import Conditions
 from skinbayes.roughness import PowerSpectrum
-from skinbayes.vocabulary import suggestions
+from skinbayes.vocabulary import LABELS, QUANTITIES, suggestions
+
+RESERVED_NAMES = ("chain", "draw", "row")
+"""Dimensions of results."""
 
 
 def check_names(
@@ -67,7 +70,13 @@ def check_derived(
     if not spec.derived:
         return
     known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names)
+    taken = {*QUANTITIES, *LABELS, *RESERVED_NAMES, *known}
     for name, block in spec.derived.items():
+        if name in taken or not (name.isidentifier() and name.isascii()):
+            raise InputError(
+                f"{spec.path}: derived.{name[:60]}: expected a new name of letters, digits and underscores that is not the name "
+                "of a quantity"
+            )
         for column, levels in block.rows.items():
             unknown = set(levels) - set(conditions.labels.get(column, ()))
             if unknown and conditions.n_rows > 1:

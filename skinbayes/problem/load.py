@@ -9,7 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, load_dataset
+from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
@@ -136,6 +136,11 @@ def _surface(
 
 
 def _dataset(spec: ModelSpec, data: str | Path | None) -> Dataset:
+    if data is None:
+        try:
+            find_dataset(str(spec.dataset))
+        except InputError as error:
+            raise InputError(f"{spec.path}: data: {error}") from None
     dataset = load_dataset(data if data is not None else str(spec.dataset))
     try:
         return dataset.select(spec.rows) if spec.rows else dataset
