@@ -68,7 +68,7 @@ def show(name: str, as_json: bool) -> None:
 
         known = [*shipped_names("models"), *shipped_names("datasets")]
         raise InputError(
-            f"no model or data set '{name}'.{suggestions(name, known)} See 'skinbayes models' and 'skinbayes datasets'"
+            f"no model or data set {name[:200]!r}.{suggestions(name[:80], known)} See 'skinbayes models' and 'skinbayes datasets'"
         )
     (_show_model if is_model else _show_dataset)(name, as_json)
 

@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             args=None if arguments is None else list(arguments), prog_name="skinbayes", standalone_mode=False
         )
     except InputError as error:
-        click.echo(f"skinbayes: {error}", err=True)
+        click.echo(f"skinbayes: {_printable(str(error))}", err=True)
         status = EXIT_BAD_INPUT
     except click.UsageError as error:
         error.show()
@@ -65,4 +65,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # the reader of a pipe went away ('skinbayes show ... | head')
         sys.stderr.close()
         status = 0
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        click.echo(f"skinbayes: {_printable(place)}{error.strerror or error}", err=True)
+        status = EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _printable(text: str) -> str:
+    """One line without control characters, which a file or an argument could send to the terminal."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

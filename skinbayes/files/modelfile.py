@@ -77,7 +77,8 @@ def find_model(name: str | Path) -> Path:
     except OSError:  # a name that no file can have
         pass
     raise InputError(
-        f"no model {text[:200]!r}.{suggestions(text[:80], list(shipped))} Shipped: {', '.join(shipped)}; or give the path of a TOML file"
+        f"no model {text[:200]!r}.{suggestions(text[:80], list(shipped))} "
+        f"Shipped: {', '.join(shipped)}; or give the path of a TOML file"
     )
 
 

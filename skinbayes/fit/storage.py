@@ -88,13 +88,13 @@ def claim_run(directory: Path, problem: Problem, resume: bool) -> None:
     InputError
         It holds a run that is not to be continued or cannot be, or it cannot be written.
     """
-    holds_result = (directory / RESULT).exists()
-    if not resume and (holds_result or (directory / STEPS).is_dir()):
-        raise InputError(
-            f"{directory}: holds {'a result' if holds_result else 'an unfinished run'} already; "
-            "give another folder, or continue it with --resume"
-        )
     try:
+        holds_result = (directory / RESULT).exists()
+        if not resume and (holds_result or (directory / STEPS).is_dir()):
+            raise InputError(
+                f"{directory}: holds {'a result' if holds_result else 'an unfinished run'} already; "
+                "give another folder, or continue it with --resume"
+            )
         stored = _read_note(directory)
         if stored is not None and resume and stored.get("fingerprint") != problem.fingerprint:
             raise FingerprintMismatch(
@@ -104,10 +104,12 @@ def claim_run(directory: Path, problem: Problem, resume: bool) -> None:
         if stored is None or not resume:
             directory.mkdir(parents=True, exist_ok=True)
             _write_inputs(directory, problem)
-    except OSError as error:
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise InputError(
-            f"{error.filename or directory}: cannot be used for a run ({error.strerror or error}); "
-            "expected a folder that can be written"
+            f"{directory}: cannot be used for a run ({reason}); expected a folder that can be written"
         ) from None
 
 

@@ -55,7 +55,7 @@ def load_problem(
     """
     spec = load_model(name)
     forward = forward_model(spec.forward, f"{spec.path}: forward")
-    rows = None if conditions is None else _user_rows(forward, conditions)
+    rows = None if conditions is None else _user_rows(spec, forward, conditions)
     parameters, surface, taken = apply_settings(
         spec, forward, settings or {}, () if rows is None else rows.values
     )
@@ -156,8 +156,13 @@ def _columns(dataset: Dataset, names: set[str]) -> Conditions:
     return Conditions(values, labels, dataset.n_rows)
 
 
-def _user_rows(forward: ForwardModel, path: str | Path) -> Conditions:
-    return _columns(load_dataset(path), set(forward.input_names()))
+def _user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Conditions:
+    rows = _columns(load_dataset(path), set(forward.input_names()))
+    if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
+        raise InputError(
+            f"{path}: none of its columns is an input of '{forward.name}', which takes {', '.join(forward.input_names())}"
+        )
+    return rows
 
 
 def _default_rows(spec: ModelSpec, taken: set[str]) -> Conditions:
