@@ -1,16 +1,19 @@
 """Relative contact area of 64 parameter vectors at full magnification: skinbayes against a loop of scipy.integrate.quad.
 
-Run with ``python benchmarks/contact_area.py [--json]``. Both sides start from the same parameters and end at A/A0; the loop
-is what one writes from Eqs. 2–4 of the paper, with the closed forms for the amplitude of the spectrum already in it.
+Run with ``python benchmarks/contact_area.py [--json]``. Both sides start from the same parameters and end at A/A0. The plain
+loop is Eqs. 2–4 of the paper with NumPy functions and the default tolerances of quad. The tuned loop is the fastest that
+was found without arrays: functions of the math module and a tolerance of 1e-4. Both already split the integral at
+the roll-off, run over ln q, and use the closed form of the mean square height.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import time
 from collections.abc import Callable
-from math import erf, exp, log, pi, sqrt
+from math import erf, log, pi, sqrt
 
 import numpy as np
 from scipy.integrate import quad
@@ -62,7 +65,9 @@ def batch(p: dict[str, np.ndarray], area_correction: float) -> np.ndarray:
     return relative_contact_area(p["nominal_pressure"], stress_variance(spectrum, skin), area_correction)
 
 
-def one_by_quad(p: dict[str, float], tolerance: float) -> float:
+def one_by_quad(
+    p: dict[str, float], tolerance: float = 1.49e-8, exp: Callable[[float], float] = np.exp
+) -> float:
     """A/A0 of one vector, plain Persson theory, with scipy.integrate.quad over ln q."""
     hurst, q0, q_r, q1 = (
         p[name] for name in ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
@@ -108,17 +113,20 @@ def run() -> dict[str, float]:
     """Time both sides and compare their results."""
     p = parameter_vectors()
     vectors = [{name: float(values[i]) for name, values in p.items()} for i in range(COUNT)]
-    exact = np.array([one_by_quad(vector, 1e-10) for vector in vectors])
+    exact = np.array([one_by_quad(vector, 1e-10, math.exp) for vector in vectors])
     error = float(np.max(np.abs(batch(p, 1.0) / exact - 1)))
-    loop = best_time(lambda: [one_by_quad(vector, 1e-4) for vector in vectors], 3, 1)
-    plain = best_time(lambda: batch(p, 1.0), 100, 10)
-    corrected = best_time(lambda: batch(p, 0.42), 100, 10)
+    plain_loop = best_time(lambda: [one_by_quad(vector) for vector in vectors], 3, 1)
+    tuned_loop = best_time(lambda: [one_by_quad(vector, 1e-4, math.exp) for vector in vectors], 5, 1)
+    ours = best_time(lambda: batch(p, 1.0), 200, 5)
+    corrected = best_time(lambda: batch(p, 0.42), 200, 5)
     return {
         "vectors": COUNT,
-        "quad_loop_us_per_vector": loop / COUNT * 1e6,
-        "skinbayes_us_per_vector": plain / COUNT * 1e6,
+        "plain_loop_us_per_vector": plain_loop / COUNT * 1e6,
+        "tuned_loop_us_per_vector": tuned_loop / COUNT * 1e6,
+        "skinbayes_us_per_vector": ours / COUNT * 1e6,
         "skinbayes_corrected_us_per_vector": corrected / COUNT * 1e6,
-        "ratio": loop / plain,
+        "ratio_to_plain_loop": plain_loop / ours,
+        "ratio_to_tuned_loop": tuned_loop / ours,
         "largest_relative_error": error,
     }
 
@@ -133,17 +141,17 @@ def main() -> None:
         print(json.dumps(result, indent=2))
         return
     print(f"A/A0 of {COUNT} parameter vectors at full magnification")
-    print(
-        f"  loop of scipy.integrate.quad (tolerance 1e-4)  {result['quad_loop_us_per_vector']:10.1f} us per vector"
+    rows = (
+        ("plain loop of scipy.integrate.quad, us per vector", "plain_loop_us_per_vector", ".1f"),
+        ("tuned loop of scipy.integrate.quad, us per vector", "tuned_loop_us_per_vector", ".1f"),
+        ("skinbayes, plain Persson, us per vector", "skinbayes_us_per_vector", ".2f"),
+        ("skinbayes, Yang-Persson correction, us per vector", "skinbayes_corrected_us_per_vector", ".2f"),
+        ("times faster than the plain loop", "ratio_to_plain_loop", ".0f"),
+        ("times faster than the tuned loop", "ratio_to_tuned_loop", ".0f"),
+        ("largest relative error of A/A0", "largest_relative_error", ".1e"),
     )
-    print(
-        f"  skinbayes, plain Persson                       {result['skinbayes_us_per_vector']:10.2f} us per vector"
-    )
-    print(
-        f"  skinbayes, Yang-Persson correction             {result['skinbayes_corrected_us_per_vector']:10.2f} us per vector"
-    )
-    print(f"  ratio (plain)                                  {result['ratio']:10.0f}")
-    print(f"  largest relative error of A/A0                 {result['largest_relative_error']:10.1e}")
+    for label, key, style in rows:
+        print(f"  {label:<52}{result[key]:>10{style}}")
 
 
 if __name__ == "__main__":

@@ -149,8 +149,9 @@ def inverse_response(skin: LayeredSkin, wavevector: FloatArray, axes: int) -> Fl
     x = wavevector * with_axes(skin.layer_thickness, axes)
     rise = np.expm1(-2 * x)  # −g
     bending = four_m * (x * (1 + rise))
-    numerator = at_zero - product * (rise * (2 + rise)) + bending
-    denominator = ground + rise * (product * rise - linear) - bending * x
+    part = product * rise
+    numerator = at_zero - part * (2 + rise) + bending
+    denominator = ground + rise * (part - linear) - bending * x
     return np.asarray(denominator / numerator)
 
 
@@ -173,12 +174,12 @@ def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
     Notes
     -----
     Relative error below 2e-11 for 1 ≤ E0/E1 ≤ 1e7 and below 1e-9 down to E0/E1 = 1e-7 (Eq. 4 evaluated as
-    printed loses seven to nine digits for a stiff layer). Frictionless contact: the shear stress at the
+    printed loses six to eight digits for a stiff layer). Frictionless contact: the shear stress at the
     surface is neglected.
 
     References
     ----------
-    Carbone, Lorenz, Persson & Wohlers, Eur. Phys. J. E 29 (2009) 275, doi 10.1140/epje/i2009-10484-8.
+    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 4).
 
     Examples
     --------
@@ -206,7 +207,7 @@ def effective_modulus(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     References
     ----------
-    Carbone, Lorenz, Persson & Wohlers, Eur. Phys. J. E 29 (2009) 275, doi 10.1140/epje/i2009-10484-8.
+    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 4).
 
     Examples
     --------

@@ -102,8 +102,7 @@ def total_area_ratio(rms_slope: ArrayLike) -> FloatArray:
 
     References
     ----------
-    Persson, J. Chem. Phys. 115 (2001) 3840, doi 10.1063/1.1388626 (average of the area element over Gaussian
-    gradients).
+    Persson & Tosatti, J. Chem. Phys. 115 (2001) 5597, doi 10.1063/1.1398300.
 
     Examples
     --------

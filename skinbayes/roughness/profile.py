@@ -38,7 +38,9 @@ def isotropic_from_profile(wavevector: FloatArray, profile_power: FloatArray) ->
             "fall there: it is continued beyond the table by its last power law."
         )
     pieces = np.maximum(np.ceil(np.diff(log_q) / _WIDEST), 1).astype(int)
-    ends = [np.geomspace(a, b, n + 1)[:-1] for a, b, n in zip(wavevector, wavevector[1:], pieces, strict=False)]
+    ends = [
+        np.geomspace(a, b, n + 1)[:-1] for a, b, n in zip(wavevector, wavevector[1:], pieces, strict=False)
+    ]
     edges, cell = np.append(np.concatenate(ends), wavevector[-1]), np.repeat(np.arange(pieces.size), pieces)
     power = np.empty_like(wavevector)
     for i, q in enumerate(wavevector):
