@@ -159,6 +159,7 @@ def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, An
             "thinning": chains.thinning(),
             "evaluations": chains.evaluations,
             "invalid": chains.invalid,
+            "first_invalid": _first_invalid(problem, chains),
             "acceptance_fraction": [float(value) for value in chains.acceptance_fraction()],
             "tau": [float(value) for value in report.tau],
             "ess_bulk": [float(value) for value in report.ess_bulk],
@@ -166,6 +167,14 @@ def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, An
             "r_hat": [float(value) for value in report.r_hat],
         },
     }
+
+
+def _first_invalid(problem: Problem, chains: Chains) -> dict[str, float] | None:
+    """The first parameters, SI, for which the forward model gave no finite answer while sampling."""
+    if not chains.invalid:
+        return None
+    theta = problem.target().transform.inverse(chains.first_invalid[np.newaxis])[0]
+    return dict(zip(problem.names, (float(value) for value in theta), strict=True))
 
 
 def _is_shipped(problem: Problem) -> bool:

@@ -106,12 +106,13 @@ class Problem:
             The model has no data, or ``theta`` has the wrong number of parameters.
         """
         batch, single = self._batch(theta)
-        return _unbatch(self._pointwise(batch) if pointwise else self.data_likelihood()(batch), single)
+        value = self._pointwise(batch) if pointwise else self._log_likelihood(batch)
+        return _unbatch(_impossible(value), single)
 
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
         """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
         batch, single = self._batch(theta)
-        return _unbatch(self.prior_density().times(self.data_likelihood())(batch), single)
+        return _unbatch(_impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
 
     def prior_transform(self, u: ArrayLike) -> FloatArray:
         """Map the unit hypercube to parameters by the prior quantiles, as nested samplers need it; shape as ``u``."""
@@ -126,7 +127,7 @@ class Problem:
         return LogDensity.independent([parameter.prior for parameter in self.free if parameter.prior])
 
     def data_likelihood(self) -> LogLikelihood:
-        """The likelihood: it stays as it is when coordinates change."""
+        """The likelihood: it stays as it is when coordinates change; NaN where the forward model has no answer."""
         return LogLikelihood(self._log_likelihood)
 
     # -- predictions -------------------------------------------------------------------------------------------------
@@ -265,10 +266,12 @@ class Problem:
         return self._pointwise(theta).sum(axis=-1)
 
     def _pointwise(self, theta: FloatArray) -> FloatArray:
-        if self.observed is None:
-            raise InputError(f"{self.spec.path}: no data are bound to these rows, so there is no likelihood")
         predicted = self.predict(theta)[self.observable]
-        return self._noise.log_density(self.observed, predicted, **self._noise_arguments(theta))
+        density = self._noise.log_density(
+            np.asarray(self.observed), predicted, **self._noise_arguments(theta)
+        )
+        # NaN where the forward model has no answer: samplers count those apart from data that are impossible
+        return np.where(np.isnan(predicted), np.nan, density)
 
     def _noise_arguments(self, theta: FloatArray) -> dict[str, FloatArray]:
         values = {entry.name: entry.values(theta) for entry in self._plan if entry.name in NOISE_PARAMETERS}
@@ -281,3 +284,7 @@ class Problem:
 
 def _unbatch(values: FloatArray, single: bool) -> FloatArray:
     return values[0] if single else values
+
+
+def _impossible(values: FloatArray) -> FloatArray:
+    return np.where(np.isnan(values) | (values == np.inf), -np.inf, values)

@@ -55,10 +55,12 @@ class PosteriorTarget:
         return density.transformed(self.transform)
 
     def log_density(self, position: FloatArray) -> FloatArray:
-        """Log posterior density of each row of ``position``, Jacobian included; −inf where impossible."""
+        """Log posterior density of each row of ``position``, Jacobian included; −inf where impossible.
+
+        NaN where the forward model has no answer, which the sampler counts and takes as impossible.
+        """
         with np.errstate(all="ignore"):
-            value = self._density(position)
-        return np.where(np.isnan(value) | (value == np.inf), -np.inf, value)
+            return self._density(position)
 
     def starts(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Positions to start from: prior draws, thinned towards the posterior but as dispersed as the draws allow.
@@ -81,9 +83,7 @@ class PosteriorTarget:
                 "the priors mostly cover values at which the forward model gives no prediction (see 'skinbayes check')"
             )
         position = position[usable]
-        weight = (
-            self.problem._log_likelihood(theta[usable]) if self.use_likelihood else np.zeros(usable.sum())
-        )
+        weight = self.problem.log_likelihood(theta[usable]) if self.use_likelihood else np.zeros(usable.sum())
         beta = _tempering(weight, count)
         # Gumbel top-k: sampling without replacement with probability ∝ exp(β·weight)
         keys = beta * weight + rng.gumbel(size=weight.shape)

@@ -39,6 +39,7 @@ class Block:
     random_state : generator state after the last step
     evaluations : log-densities computed
     invalid : how many of them were NaN or +inf and were taken as −inf
+    first_invalid : the first position of that kind, shape ``(D,)``; NaN if there was none
     """
 
     positions: FloatArray
@@ -46,6 +47,7 @@ class Block:
     random_state: tuple[Any, ...]
     evaluations: int
     invalid: int
+    first_invalid: FloatArray
 
     @property
     def end(self) -> EnsembleState:
@@ -61,6 +63,7 @@ class Density:
         self._vectorize = vectorize
         self.evaluations = 0
         self.invalid = 0
+        self.first_invalid = np.full(len(target.names), np.nan)
 
     def __call__(self, position: FloatArray) -> FloatArray:
         """Log-density of each row of ``position`` (shape ``(B, D)``), shape ``(B,)``."""
@@ -70,7 +73,10 @@ class Density:
             rows = [self._target.log_density(position[row : row + 1]) for row in range(len(position))]
             value = np.concatenate([np.asarray(row, dtype=float) for row in rows])
         invalid = np.isnan(value) | (value == np.inf)
-        value[invalid] = -np.inf
+        if invalid.any():
+            if not self.invalid:
+                self.first_invalid = position[np.argmax(invalid)].copy()
+            value[invalid] = -np.inf
         self.evaluations += len(position)
         self.invalid += int(np.count_nonzero(invalid))
         return value
@@ -109,4 +115,11 @@ def advance(target: Target, state: EnsembleState, steps: int, vectorize: bool, m
     for step, current in enumerate(made):
         positions[step] = current.coords
         log_density[step] = current.log_prob
-    return Block(positions, log_density, sampler.random_state, density.evaluations, density.invalid)
+    return Block(
+        positions,
+        log_density,
+        sampler.random_state,
+        density.evaluations,
+        density.invalid,
+        density.first_invalid,
+    )

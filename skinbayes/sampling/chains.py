@@ -23,6 +23,7 @@ class Chains:
     report : the stopping rule's verdict at the last step
     evaluations : log-densities computed, starts included
     invalid : how many of them were NaN or +inf and were taken as −inf
+    first_invalid : the first position of that kind, shape ``(D,)``; NaN if there was none
     """
 
     names: tuple[str, ...]
@@ -31,6 +32,7 @@ class Chains:
     report: StoppingReport
     evaluations: int
     invalid: int
+    first_invalid: FloatArray
 
     @property
     def converged(self) -> bool:

@@ -147,4 +147,8 @@ def _chains(
         report=report,
         evaluations=starts + sum(block.evaluations for blocks in rounds for block in blocks),
         invalid=sum(block.invalid for blocks in rounds for block in blocks),
+        first_invalid=next(
+            (block.first_invalid for blocks in rounds for block in blocks if block.invalid),
+            np.full(len(target.names), np.nan),
+        ),
     )

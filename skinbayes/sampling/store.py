@@ -157,6 +157,7 @@ _ARRAYS = (
     "generator_cached_gaussian",
     "evaluations",
     "invalid",
+    "first_invalid",
 )
 
 
@@ -172,6 +173,7 @@ def _arrays(blocks: list[Block]) -> dict[str, np.ndarray]:
         "generator_cached_gaussian": np.array([state[4] for state in states], dtype=np.float64),
         "evaluations": np.array([block.evaluations for block in blocks], dtype=np.int64),
         "invalid": np.array([block.invalid for block in blocks], dtype=np.int64),
+        "first_invalid": np.stack([block.first_invalid for block in blocks]),
     }
 
 
@@ -190,6 +192,7 @@ def _blocks(arrays: Mapping[str, np.ndarray]) -> list[Block]:
             ),
             evaluations=int(arrays["evaluations"][index]),
             invalid=int(arrays["invalid"][index]),
+            first_invalid=arrays["first_invalid"][index],
         )
         for index in range(len(arrays["positions"]))
     ]

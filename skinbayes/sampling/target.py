@@ -24,7 +24,10 @@ class Target(Protocol):
         """A digest of everything the density depends on: model, data, priors, code version."""
 
     def log_density(self, position: FloatArray) -> FloatArray:
-        """Log-density of each row of ``position`` (shape ``(B, D)``), shape ``(B,)``; −inf where impossible, never NaN."""
+        """Log-density of each row of ``position`` (shape ``(B, D)``), shape ``(B,)``; −inf where impossible.
+
+        NaN and +inf are taken as −inf by the sampler, which counts them and keeps the first offending position.
+        """
 
     def starts(self, rng: np.random.Generator, count: int) -> FloatArray:
         """``count`` dispersed positions of finite density, shape ``(count, D)``."""

@@ -1,6 +1,6 @@
 """Statistics that know nothing of skin: priors, transforms, densities and likelihoods, noise families."""
 
-from skinbayes.statistics.densities import GuardedLikelihood, ImpossibleValues, LogDensity, LogLikelihood
+from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.families import FAMILIES, Family
 from skinbayes.statistics.noise import NOISE_FAMILIES, NoiseFamily, noise_family
 from skinbayes.statistics.priors import Prior, make_prior
@@ -10,8 +10,6 @@ __all__ = [
     "FAMILIES",
     "NOISE_FAMILIES",
     "Family",
-    "GuardedLikelihood",
-    "ImpossibleValues",
     "LogDensity",
     "LogLikelihood",
     "NoiseFamily",

@@ -8,7 +8,7 @@ likelihood; the product of two densities has no meaning here and is refused.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 
@@ -160,73 +160,3 @@ class LogDensity:
         if not isinstance(likelihood, LogLikelihood):
             raise TypeError("A density can only be multiplied by a likelihood, not by another density.")
         return LogDensity(_Product(self.function, likelihood.function))
-
-
-@dataclass
-class ImpossibleValues:
-    """How often a function gave something that is not a log-density, and where first. Mutable, picklable.
-
-    A copy that was sent to another process counts for itself; add it back with :meth:`merge`.
-
-    Attributes
-    ----------
-    counts : cause (``"NaN"`` or ``"+inf"``) to the number of parameter vectors
-    first : cause to the first offending parameter vector, shape ``(D,)``, as a tuple
-    """
-
-    counts: dict[str, int] = field(default_factory=dict)
-    first: dict[str, tuple[float, ...]] = field(default_factory=dict)
-
-    def record(self, cause: str, points: FloatArray) -> None:
-        """Count the rows of ``points`` (shape ``(n, D)``) under ``cause``; the very first one is kept."""
-        if len(points):
-            self.counts[cause] = self.counts.get(cause, 0) + len(points)
-            self.first.setdefault(cause, tuple(float(value) for value in points[0]))
-
-    def merge(self, other: ImpossibleValues) -> None:
-        """Add the counts of ``other``."""
-        for cause, count in other.counts.items():
-            self.counts[cause] = self.counts.get(cause, 0) + count
-            self.first.setdefault(cause, other.first[cause])
-
-    @property
-    def total(self) -> int:
-        """Number of offending parameter vectors of any cause."""
-        return sum(self.counts.values())
-
-    def sentences(self, names: tuple[str, ...]) -> list[str]:
-        """One sentence per cause, with the first offending point by parameter name."""
-        lines = []
-        for cause, count in self.counts.items():
-            where = ", ".join(
-                f"{name} = {value:g}" for name, value in zip(names, self.first[cause], strict=True)
-            )
-            times = "once" if count == 1 else f"{count} times"
-            lines.append(
-                f"The log-likelihood was {cause} {times} and was taken as impossible; first at {where}."
-            )
-        return lines
-
-
-@dataclass(frozen=True)
-class GuardedLikelihood:
-    """A log-likelihood whose NaN and +inf become −inf, counted in ``impossible``.
-
-    Attributes
-    ----------
-    function : ``(B, D)`` to ``(B,)``
-    impossible : the counter that is written to
-    """
-
-    function: BatchFunction
-    impossible: ImpossibleValues
-
-    def __call__(self, theta: FloatArray) -> FloatArray:
-        """``function(theta)`` with impossible values replaced by −inf, shape ``(B,)``."""
-        value = np.asarray(self.function(theta), dtype=float)
-        good = value < inf  # False for NaN and +inf
-        if good.all():
-            return value
-        self.impossible.record("NaN", theta[np.isnan(value)])
-        self.impossible.record("+inf", theta[value == inf])
-        return np.where(good, value, -inf)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from skinbayes.statistics.densities import GuardedLikelihood, ImpossibleValues, LogDensity, LogLikelihood
+from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.priors import make_prior
 from skinbayes.statistics.transforms import VectorTransform
 
@@ -19,11 +19,6 @@ def poisson(theta):
     """Four counts with mean a·b."""
     mean = theta[:, :1] * theta[:, 1:]
     return stats.poisson.logpmf(np.array([2, 3, 5, 1]), mean).sum(axis=1)
-
-
-def strange(theta):
-    x = theta[:, 0]
-    return np.where(x > 2, nan, np.where(x > 1, inf, np.where(x < -1, -inf, -x * x)))
 
 
 def refuse(theta):
@@ -111,39 +106,8 @@ def test_far_out_on_the_line_is_impossible_not_nan():
     assert values[:4].tolist() == [-inf] * 4
 
 
-def test_guard_counts_by_cause_and_keeps_the_first_point():
-    counter = ImpossibleValues()
-    guarded = LogLikelihood(GuardedLikelihood(strange, counter))
-    theta = np.array([[0.5, 7.0], [3.0, 8.0], [1.5, 9.0], [4.0, 1.0], [-2.0, 1.0]])
-    assert guarded(theta).tolist() == [-0.25, -inf, -inf, -inf, -inf]
-    assert counter.counts == {"NaN": 2, "+inf": 1}
-    assert counter.first == {"NaN": (3.0, 8.0), "+inf": (1.5, 9.0)}
-    guarded(theta[1:2])
-    assert counter.total == 4
-    first, second = counter.sentences(("modulus", "height"))
-    assert "NaN 3 times" in first
-    assert "modulus = 3, height = 8" in first
-    assert "+inf once" in second
-
-
-def test_clean_values_are_not_counted():
-    counter = ImpossibleValues()
-    theta = np.zeros((3, 2))
-    assert GuardedLikelihood(strange, counter)(theta).tolist() == [0.0, 0.0, 0.0]
-    assert counter.total == 0
-    assert counter.sentences(("a", "b")) == []
-
-
-def test_counters_merge():
-    one = ImpossibleValues({"NaN": 1}, {"NaN": (1.0,)})
-    one.merge(ImpossibleValues({"NaN": 2, "+inf": 3}, {"NaN": (2.0,), "+inf": (4.0,)}))
-    assert one.counts == {"NaN": 3, "+inf": 3}
-    assert one.first == {"NaN": (1.0,), "+inf": (4.0,)}
-
-
 def test_a_posterior_travels_to_another_process():
-    counter = ImpossibleValues()
-    posterior = LogDensity.independent(PRIORS).times(LogLikelihood(GuardedLikelihood(poisson, counter)))
+    posterior = LogDensity.independent(PRIORS).times(LogLikelihood(poisson))
     posterior = posterior.transformed(TO_LINE)
     z = np.random.default_rng(4).normal(size=(5, 2))
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(posterior))(z), posterior(z))

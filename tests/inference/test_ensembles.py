@@ -108,6 +108,8 @@ def test_nan_and_infinity_count_as_impossible():
     value = density(np.array([[3.0, 0.0], [-3.0, 0.0], [0.0, 0.0]]))
     assert value.tolist() == [-np.inf, -np.inf, 0.0]
     assert (density.evaluations, density.invalid) == (3, 2)
+    assert density.first_invalid.tolist() == [3.0, 0.0]
+    assert np.abs(chains.first_invalid[0]) > 2.0
 
 
 def test_impossible_starts_are_named():

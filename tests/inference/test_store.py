@@ -22,7 +22,14 @@ def block(seed):
     generator = np.random.RandomState(seed)
     positions = generator.normal(size=(5, 8, 2))  # an odd number of draws leaves a cached one
     generator.normal()
-    return Block(positions, generator.normal(size=(5, 8)), generator.get_state(), 40, 2)
+    return Block(
+        positions,
+        generator.normal(size=(5, 8)),
+        generator.get_state(),
+        40,
+        2,
+        generator.normal(size=positions.shape[-1]),
+    )
 
 
 def assert_same(first, second):
@@ -32,6 +39,7 @@ def assert_same(first, second):
     assert np.array_equal(first.random_state[1], second.random_state[1])
     assert first.random_state[2:] == second.random_state[2:]
     assert (first.evaluations, first.invalid) == (second.evaluations, second.invalid)
+    assert np.array_equal(first.first_invalid, second.first_invalid)
 
 
 @pytest.fixture
