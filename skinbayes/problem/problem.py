@@ -266,10 +266,10 @@ class Problem:
         return self._pointwise(theta).sum(axis=-1)
 
     def _pointwise(self, theta: FloatArray) -> FloatArray:
+        if self.observed is None:
+            raise InputError(f"{self.spec.path}: '{self.name}' has no data here, so there is no likelihood")
         predicted = self.predict(theta)[self.observable]
-        density = self._noise.log_density(
-            np.asarray(self.observed), predicted, **self._noise_arguments(theta)
-        )
+        density = self._noise.log_density(self.observed, predicted, **self._noise_arguments(theta))
         # NaN where the forward model has no answer: samplers count those apart from data that are impossible
         return np.where(np.isnan(predicted), np.nan, density)
 
