@@ -11,6 +11,7 @@ from skinbayes.contact.layered import (
     surface_response,
     validate_skin,
 )
+from skinbayes.contact.separation import mean_separation
 from skinbayes.contact.variance import stress_variance
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "corrected_stress_variance",
     "effective_modulus",
     "elastoplastic_contact_area",
+    "mean_separation",
     "persson_contact_area",
     "reduced_modulus",
     "relative_contact_area",

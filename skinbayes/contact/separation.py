@@ -1,0 +1,90 @@
+"""Mean interfacial separation of rough layered skin and a smooth countersurface."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.correction import AREA_CORRECTION
+from skinbayes.contact.layered import LayeredSkin
+from skinbayes.contact.separation_grid import SeparationGrid, separation_grid
+from skinbayes.contact.separation_tables import ClosingFunction, closing_function
+from skinbayes.roughness._fields import with_axes
+from skinbayes.roughness.spectrum import PowerSpectrum
+
+_BLOCK = 1 << 15  # terms summed at a time: a few arrays of them fit into the cache
+_LOWEST, _HIGHEST = 1e-300, 1e150  # Pa; 0 and inf are put in afterwards
+
+
+def mean_separation(
+    nominal_pressure: ArrayLike,
+    spectrum: PowerSpectrum,
+    skin: LayeredSkin,
+    area_correction: ArrayLike = AREA_CORRECTION,
+) -> FloatArray:
+    """Mean separation ū(p) of a rough layered solid pressed against a smooth rigid one.
+
+    The pressure is the rate at which the elastic energy stored at the contacts changes with the separation,
+    ``p = −dU/dū``, ``U = (π/2) ∫ q² C E_eff A [γ + (1 − γ) A²] dq`` per area with A = erf(wp), which gives
+    ``ū = √π ∫ q² C E_eff w ∫_p^∞ [γ + 3(1 − γ) erf²(wp′)] exp(−w²p′²) dp′/p′ dq``, where w(q) = V(q)^(−½)
+    and V(q) is the stress variance of all wavevectors up to q (Eq. 3 of the paper, V = 4 p0² G). It is the
+    separation of the paper's Sect. 5 and Fig. 10 without water.
+
+    Parameters
+    ----------
+    nominal_pressure : p, Pa, ≥ 0, shape ``(K,)`` or ``(..., K)``, or a scalar; 0 gives inf
+    spectrum : power spectrum, C in m^4, scalar or batched
+    skin : moduli in Pa, thickness in m; broadcasts with the spectrum
+    area_correction : γ, dimensionless, 0 < γ ≤ 1, batch shape; 1 is plain Persson theory
+
+    Returns
+    -------
+    mean_separation : m, ≥ 0, batch shape, plus the axis of ``nominal_pressure`` if it has one; nan where a
+        parameter is impossible
+
+    Notes
+    -----
+    For small p ``ū ≈ −u0 ln p + const`` with ``u0 = γ√π ∫ q² C E_eff w dq``; near complete contact it falls
+    like exp(−p²/V). Real contact has u = 0 and counts in the mean. Here V is the uncorrected variance also
+    for γ < 1, as in the source.
+
+    Relative quadrature error for skin (d from 5 to 100 µm, q0 from 3e2 to 5e3 1/m, q_r/q0 up to 20, E0/E1 from 1
+    to 1e6, any H, p/√V from 1e-6 to 3): median 2e-9, at worst 4e-5; with a plateau of three decades 6e-4. A
+    tabulated spectrum has kinks between the nodes: 2e-4.
+
+    References
+    ----------
+    Persson, Phys. Rev. Lett. 99 (2007) 125502, doi 10.1103/PhysRevLett.99.125502.
+    Yang & Persson, J. Phys.: Condens. Matter 20 (2008) 215214, doi 10.1088/0953-8984/20/21/215214.
+
+    Examples
+    --------
+    >>> from skinbayes.roughness import named_surface
+    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> print(f"{mean_separation(6830.0, named_surface('paper_reference'), wet):.4e}")
+    1.3524e-05
+    """
+    pressure = np.asarray(nominal_pressure, dtype=np.float64)
+    gamma = np.asarray(area_correction, dtype=np.float64)
+    with np.errstate(all="ignore"):
+        possible = np.where(pressure >= 0, np.clip(pressure, _LOWEST, _HIGHEST), np.nan)
+        grid = separation_grid(spectrum, skin)
+        separation = sum_separation(
+            np.log(np.atleast_1d(possible)), grid, closing_function(with_axes(gamma, 2))
+        )
+        separation = separation if pressure.ndim else separation[..., 0]
+        return np.where(pressure == 0, separation * np.inf, separation)[()]
+
+
+def sum_separation(log_pressure: FloatArray, grid: SeparationGrid, closing: ClosingFunction) -> FloatArray:
+    """ū for ``log_pressure`` of shape ``(..., K)`` (ln of Pa), m; γ of ``closing`` has two axes more than the batch."""
+    log_variance, inverse_variance, weight = (part[..., None, :] for part in grid)
+    batch = np.broadcast_shapes(weight.shape[:-2], log_pressure.shape[:-1], np.shape(closing.gamma)[:-2])
+    found = np.empty((*batch, log_pressure.shape[-1]))
+    step = max(1, _BLOCK // max(1, found[..., 0].size * weight.shape[-1]))
+    for first in range(0, log_pressure.shape[-1], step):
+        block = slice(first, first + step)
+        part = log_pressure[..., block, None]
+        terms = weight * closing(log_variance - 2 * part, np.exp(2 * part) * inverse_variance)
+        found[..., block] = np.ascontiguousarray(terms).sum(axis=-1)
+    return found
