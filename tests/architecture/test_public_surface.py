@@ -10,15 +10,15 @@ from inspect import cleandoc
 from typing import Any
 
 import pytest
-from source_tree import Definition, public_definitions
+from source_tree import PACKAGE, Definition, public_definitions
 
 import skinbayes
 
-DOCUMENTED = ("roughness", "contact", "friction", "statistics", "sampling", "diagnose", "files", "forward", "problem",
+DOCUMENTED = ("roughness", "contact", "wetting", "friction", "wetting", "statistics", "sampling", "diagnose", "files", "forward", "problem",
               "fit", "comparison", "plot", "report", "units", "vocabulary", "errors", "arrays")  # fmt: skip
 
 UNIT = re.compile(
-    r"(?:^|\s)(1/m|1/s|Pa²?|Pa s|m|m\^-?\d|kg|s|N|N/m|m/s|rad|dimensionless|m\^\(\d − \w+\))(?=[,;.)\s]|$)|, K(?=[,;]|$)",
+    r"(?:^|\s)(1/m|1/s|Pa²?|Pa s|m|m\^-?\d|kg|s|N|N/m|m/s|J/kg|kg/m\^3|rad|dimensionless|m\^\(\d − \w+\))(?=[,;.)\s]|$)|, K(?=[,;]|$)",
     re.MULTILINE,
 )
 """A unit as docstrings write it, apart from the K and N of shapes."""
@@ -29,7 +29,7 @@ NUMERIC = {"ArrayLike", "FloatArray", "float", "int"}
 
 def physics_callables() -> Iterator[tuple[str, Any]]:
     """Functions and classes that the physics packages export."""
-    for package in ("roughness", "contact"):
+    for package in ("roughness", "contact", "wetting"):
         module = import_module(f"skinbayes.{package}")
         for name in module.__all__:
             if callable(found := getattr(module, name)):
@@ -75,7 +75,7 @@ def test_top_level_names() -> None:
 
 
 @pytest.mark.parametrize(
-    "package", ["roughness", "contact", "statistics", "diagnose", "files", "forward", "problem", "fit"]
+    "package", ["roughness", "contact", "wetting", "statistics", "diagnose", "files", "forward", "problem", "fit"]
 )
 def test_packages_list_what_they_export(package: str) -> None:
     module = import_module(f"skinbayes.{package}")

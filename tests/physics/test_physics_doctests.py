@@ -10,8 +10,9 @@ import pytest
 import skinbayes.contact
 import skinbayes.friction
 import skinbayes.roughness
+import skinbayes.wetting
 
-PACKAGES = (skinbayes.roughness, skinbayes.contact)
+PACKAGES = (skinbayes.roughness, skinbayes.contact, skinbayes.wetting)
 MODULES = [
     f"{package.__name__}.{module.name}"
     for package in PACKAGES
