@@ -56,10 +56,10 @@ def plot_corner(fit: Fit) -> Figure:
     draws = draws[:: max(1, len(draws) // DRAWS)]
     count = len(labels)
     ranges = [_range(column) for column in draws.T]
-    size = 4.0 if count == 1 else min(LARGEST, 1.2 + 1.35 * count)
+    size = 4.0 if count == 1 else min(LARGEST, 1.2 + 1.25 * count)
     font = 9.0 if count <= 8 else max(6.0, 72.0 * size / count / 12.0)
     with look():
-        figure = new_figure(size, size, layout=None)
+        figure = new_figure(size, size)
         axes = figure.subplots(count, count, squeeze=False)
         corner.corner(
             draws, fig=figure, bins=30, range=ranges, color=POSTERIOR, smooth=1.0, smooth1d=1.0, max_n_ticks=3,
@@ -84,7 +84,7 @@ def plot_corner(fit: Fit) -> Figure:
             wspace=0.09,
             hspace=0.09,
         )
-        set_title(figure, fit, TITLE, y=1.0 - 0.12 / size)
+        set_title(figure, fit, TITLE)
         notes = ["dashed: 5 %, 50 % and 95 %"] + (
             ["contours: 50 % and 90 % of the probability"] if count > 1 else []
         )

@@ -10,12 +10,14 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number with a few significant digits and no computer notation.
+    """A number with a few significant digits and no computer notation; zeros at its end are kept if they were rounded to.
 
     Examples
     --------
     >>> number(2412.3), number(0.76543), number(1.3586e-4), number(float("inf")), number(120000.0)
     ('2410', '0.765', '1.36 × 10⁻⁴', 'infinite', '1.2 × 10⁵')
+    >>> number(0.29974), number(0.3)
+    ('0.300', '0.3')
     """
     if not isfinite(value):
         return "not a number" if value != value else "infinite" if value > 0 else "−infinite"
@@ -23,12 +25,20 @@ def number(value: float, digits: int = 3) -> str:
     if rounded == 0.0:
         return "0"
     exponent = floor(log10(abs(rounded)) + 1e-12)
-    if -3 <= exponent < 5:
-        return f"{rounded:.{max(0, digits - 1 - exponent)}f}".rstrip("0").rstrip(".") if exponent < digits - 1 \
-            else f"{rounded:.0f}"  # fmt: skip
-    mantissa = f"{rounded / 10.0**exponent:.{digits}g}"
-    power = f"10{str(exponent).translate(_RAISED)}"
-    return power if mantissa == "1" else f"{mantissa} × {power}"
+    small = exponent < -3 or exponent >= 5
+    mantissa = rounded / 10.0**exponent if small else rounded
+    text = f"{mantissa:.{max(0, digits - 1 - (0 if small else exponent))}f}"
+    if "." in text and abs(value - rounded) <= 1e-9 * abs(rounded):
+        text = text.rstrip("0").rstrip(".")
+    if not small:
+        return text
+    power = power_of_ten(exponent)
+    return power if text == "1" else f"{text} × {power}"
+
+
+def power_of_ten(exponent: int) -> str:
+    """``"10⁻⁵"``."""
+    return f"10{str(exponent).translate(_RAISED)}"
 
 
 def prefix_of(typical: float, unit: str) -> tuple[float, str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.scales import scale_for, ticks
-from skinbayes.plot.style import OBSERVED, POSTERIOR, PRIOR, WIDTH, look, new_figure, set_title
+from skinbayes.plot.style import OBSERVED, POSTERIOR, PRIOR, WIDTH, key_below, look, new_figure, set_title
 from skinbayes.plot.symbols import figure_text, spoken_name
 from skinbayes.vocabulary import lookup
 
@@ -97,18 +97,19 @@ def _plot(fit: Fit, group: str, title: str, colour: str) -> Figure:
     order = np.arange(count) if count <= MOST_LABELLED else np.argsort(quantiles[2], kind="stable")
     bands, points = scale.shown(quantiles[:, order]), scale.shown(observed[order])
     label = scale.label(f"{spoken_name(name)} {figure_text(symbol)}")
-    low, high = float(np.nanmin([bands[0].min(), points.min()])), float(max(bands[4].max(), points.max()))
     with look():
         if count <= MOST_LABELLED:
-            figure = new_figure(WIDTH, max(2.2, 1.3 + 0.26 * count))
+            names = [_shortened(name) for name in row_names(fit)]
+            margin = 0.25 + 0.085 * max(len(name) for name in names)
+            figure = new_figure(WIDTH, 1.35 + 0.26 * max(count, 3), left=margin, bottom=0.85)
             ax = figure.subplots()
-            _labelled(ax, bands, points, [row_names(fit)[i] for i in order], colour)
+            _labelled(ax, bands, points, names, colour)
             axis: Axis = ax.xaxis
             ax.set_xlabel(label)
             if scale.logarithmic:
                 ax.set_xscale("log")
         else:
-            figure = new_figure(WIDTH, 3.6)
+            figure = new_figure(WIDTH, 3.6, left=0.75, bottom=0.85)
             ax = figure.subplots()
             _dense(ax, bands, points, colour)
             axis = ax.yaxis
@@ -116,12 +117,16 @@ def _plot(fit: Fit, group: str, title: str, colour: str) -> Figure:
             ax.set_xlabel(f"{count} rows of data, ordered by prediction")
             if scale.logarithmic:
                 ax.set_yscale("log")
+        low, high = ax.get_xlim() if axis is ax.xaxis else ax.get_ylim()
         if high > low:
             ticks(axis, scale, low, high, most=5)
-        handles, texts = ax.get_legend_handles_labels()
-        figure.legend(handles, texts, loc="outside lower center", ncols=3)
+        key_below(figure, ax, 3)
         set_title(figure, fit, title)
     return figure
+
+
+def _shortened(name: str) -> str:
+    return name if len(name) <= 24 else name[:23] + "…"
 
 
 def _labelled(ax: Axes, bands: FloatArray, points: FloatArray, names: list[str], colour: str) -> None:
@@ -139,8 +144,7 @@ def _labelled(ax: Axes, bands: FloatArray, points: FloatArray, names: list[str],
         linestyle="",
         label="observed",
     )
-    shortened = [name if len(name) <= 28 else name[:27] + "…" for name in names]
-    ax.set_yticks(y, shortened, parse_math=False)
+    ax.set_yticks(y, names, parse_math=False)
     ax.set_ylim(-0.7, len(points) - 0.3)
     ax.grid(axis="x", color="#E2E2E2", linewidth=0.6)
     ax.set_axisbelow(True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.scales import Scale, scale_for, ticks
-from skinbayes.plot.style import POSTERIOR, PRIOR, WIDTH, look, new_figure, set_title
+from skinbayes.plot.style import POSTERIOR, PRIOR, WIDTH, key_below, look, new_figure, set_title
 from skinbayes.plot.symbols import figure_symbol
 from skinbayes.plot.updates import fit_updates
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from skinbayes.fit import Fit
 
-BINS = 200
+BINS = 128
 
 VERDICTS = {"updated": "updated", "not updated": "not updated", "contradicted": "contradicts the prior"}
 
@@ -40,14 +40,15 @@ def plot_prior_posterior(fit: Fit) -> Figure:
     columns = 1 if len(names) == 1 else 2
     rows = -(-len(names) // columns)
     with look():
-        figure = new_figure(WIDTH, 0.9 + 1.45 * rows)
+        figure = new_figure(
+            WIDTH, 0.6 + 1.5 * rows + 0.3, top=0.6, bottom=0.85, between=(0.3, 0.75), panels=(columns, rows)
+        )
         axes = np.atleast_1d(figure.subplots(rows, columns, squeeze=False)).reshape(-1)
         for ax, label in zip(axes, names, strict=False):
             _panel(ax, fit, label, VERDICTS[updates[label].verdict])
         for ax in axes[len(names) :]:
             ax.set_axis_off()
-        handles, texts = axes[0].get_legend_handles_labels()
-        figure.legend(handles, texts, loc="outside lower center", ncols=2)
+        key_below(figure, axes[0], 2)
         set_title(figure, fit, "Prior against posterior")
     return figure
 
@@ -91,7 +92,7 @@ def smooth_density(values: FloatArray, logarithmic: bool) -> tuple[FloatArray, F
 
     Returns
     -------
-    positions and densities, both of shape ``(200,)``; the densities are zero for draws without spread
+    positions and densities, both of shape ``(128,)``; the densities are zero for draws without spread
 
     Examples
     --------

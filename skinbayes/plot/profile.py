@@ -63,7 +63,11 @@ def plot_profile(fit: Fit) -> Figure:
     if not profiles:
         return sentence_figure(fit, title, f"The forward model '{fit.problem.forward.name}' has no curves.")
     with look():
-        figure = new_figure(WIDTH, 3.9 * len(profiles))
+        figure = new_figure(
+            WIDTH, 4.0 * len(profiles), left=0.8, right=0.3, bottom=0.55, top=0.9, between=(0.0, 1.4),
+            panels=(1, len(profiles)),
+        )  # fmt: skip
+
         axes = figure.subplots(len(profiles), 1, squeeze=False)[:, 0]
         for ax, profile in zip(axes, profiles, strict=True):
             _panel(ax, fit.problem, profile, profile_bands(fit, fit.problem, profile))
@@ -74,8 +78,8 @@ def plot_profile(fit: Fit) -> Figure:
 def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
     """The curves of one profile, at most four, each for a group of rows that share it."""
     theta = fit.theta()
-    theta = theta[:: max(1, len(theta) // DRAWS)]
     middle = np.median(theta, axis=0, keepdims=True)
+    theta = theta[:: max(1, len(theta) // DRAWS)]
     groups = _groups(problem, profile, middle)
     shared = len(groups) == 1
     names, bands = row_names(fit), []
@@ -140,7 +144,7 @@ def _panel(ax: Axes, problem: Problem, profile: Profile, bands: list[Band]) -> N
             limits(low, high)
         else:
             low, high = ax.get_ylim()
-        ticks(axis, scale, low, high, most=6)
+        ticks(axis, scale, low, high, most=6, between=True)
     ax.grid(color="#E6E6E6", linewidth=0.6)
     ax.set_axisbelow(True)
     ax.set_xlabel(x_scale.label(f"{x_quantity.name} {figure_text(x_quantity.symbol)}"))
@@ -174,5 +178,5 @@ def _magnification_axis(ax: Axes, smallest: float) -> None:
     upper = ax.secondary_xaxis("top", functions=(zoom, back))
     low, high = ax.get_xlim()
     scale = scale_for("1", np.array([low, high]) / smallest)
-    ticks(upper.xaxis, scale, low / smallest, high / smallest, most=6)
+    ticks(upper.xaxis, scale, low / smallest, high / smallest, most=6, between=True)
     upper.set_xlabel(f"magnification {figure_text('ζ = q/q0')}")

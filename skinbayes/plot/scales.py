@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.plot.numbers import prefix_of
+from skinbayes.plot.numbers import power_of_ten, prefix_of
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
@@ -64,7 +64,13 @@ def round_values(low: float, high: float, most: int = 4) -> list[float]:
     """
     decades = range(int(np.floor(np.log10(low))) - 1, int(np.ceil(np.log10(high))) + 2)
     best: list[float] = []
-    options = ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0))
+    options = (
+        (1.0,),
+        (1.0, 3.0),
+        (1.0, 2.0, 5.0),
+        (1.0, 1.5, 2.0, 3.0, 5.0, 7.0),
+        (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0),
+    )
     for mantissas in options:
         values = [float(f"{m}e{d}") for d in decades for m in mantissas]
         inside = [v for v in values if low * 0.999 <= v <= high * 1.001]
@@ -77,39 +83,44 @@ def round_values(low: float, high: float, most: int = 4) -> list[float]:
 
 
 def plain_number(value: float) -> str:
-    """A tick label: ``"0.05"``, ``"200"``, ``"3·10⁻⁵"`` with the power set as such.
+    """A tick label: ``"0.05"``, ``"200"``; powers of ten outside 1e-3 to 1e5.
 
     Examples
     --------
     >>> plain_number(0.05), plain_number(200.0), plain_number(1e-5)
-    ('0.05', '200', '$10^{-5}$')
+    ('0.05', '200', '10⁻⁵')
     """
     return f"{value:g}" if value == 0.0 or 1e-3 <= abs(value) < 1e5 else power_number(value)
 
 
 def power_number(value: float) -> str:
-    """A tick label of an axis that spans many decades.
+    """A tick label of an axis that spans many decades. Plain text: matplotlib takes long to set mathematics.
 
     Examples
     --------
     >>> power_number(1.0), power_number(10.0), power_number(1e5), power_number(3e-4)
-    ('1', '10', '$10^{5}$', '$3·10^{-4}$')
+    ('1', '10', '10⁵', '3·10⁻⁴')
     """
     if 0.5 < value < 50.0:
         return f"{value:g}"
     exponent = int(np.floor(np.log10(abs(value)) + 1e-9))
     mantissa = float(f"{value / 10.0**exponent:.3g}")
-    return f"$10^{{{exponent}}}$" if mantissa == 1.0 else f"${mantissa:g}·10^{{{exponent}}}$"
+    return power_of_ten(exponent) if mantissa == 1.0 else f"{mantissa:g}·{power_of_ten(exponent)}"
 
 
-def ticks(axis: Axis, scale: Scale, low: float, high: float, most: int = 4) -> None:
-    """Put a few round numbers on an axis whose limits are ``low`` and ``high`` in the unit shown."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
+def ticks(axis: Axis, scale: Scale, low: float, high: float, most: int = 4, between: bool = False) -> None:
+    """Put a few round numbers on an axis whose limits are ``low`` and ``high`` in the unit shown.
+
+    ``between`` keeps the small ticks of a logarithmic axis.
+    """
+    from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullFormatter, NullLocator
 
     written = plain_number
     if scale.logarithmic:
         axis.set_major_locator(FixedLocator(round_values(low, high, most)))
         axis.set_minor_formatter(NullFormatter())
+        if not between:
+            axis.set_minor_locator(NullLocator())
         written = power_number if high / low > 3e4 else plain_number
     else:
         axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from skinbayes.fit import Fit
@@ -26,7 +27,7 @@ WIDTH = 5.2
 
 NOT_CONVERGED = "NOT CONVERGED"
 
-_SETTINGS = {
+_SETTINGS: Any = {
     "font.family": "DejaVu Sans",  # comes with matplotlib and has the Greek letters
     "font.size": 10.0,
     "axes.titlesize": 10.0,
@@ -59,25 +60,57 @@ def look() -> Iterator[None]:
         yield
 
 
-def new_figure(width: float = WIDTH, height: float = 3.2, layout: str | None = "constrained") -> Figure:
-    """A figure without a window (it can be saved anywhere, and pyplot never hears of it); size in inch."""
+def new_figure(
+    width: float = WIDTH,
+    height: float = 3.2,
+    *,
+    left: float = 0.2,
+    right: float = 0.2,
+    bottom: float = 0.6,
+    top: float = 0.4,
+    between: tuple[float, float] = (0.2, 0.2),
+    panels: tuple[int, int] = (1, 1),
+) -> Figure:
+    """A figure without a window: it can be saved anywhere, and pyplot never hears of it.
+
+    Parameters
+    ----------
+    width, height : size, inch
+    left, right, bottom, top : margins, inch (given rather than computed: automatic layout takes as long as drawing)
+    between : horizontal and vertical distance between panels, inch
+    panels : number of columns and rows
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout=layout)
+    figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
+    columns, rows = panels
+    panel_width = (width - left - right - between[0] * (columns - 1)) / columns
+    panel_height = (height - bottom - top - between[1] * (rows - 1)) / rows
+    figure.subplots_adjust(
+        left / width, bottom / height, 1.0 - right / width, 1.0 - top / height,
+        between[0] / panel_width, between[1] / panel_height,
+    )  # fmt: skip
     return figure
 
 
-def set_title(figure: Figure, fit: Fit, text: str, **place: float) -> None:
+def set_title(figure: Figure, fit: Fit, text: str) -> None:
     """Write the title; a fit that has not converged is named so, in another colour and weight."""
-    title = text if fit.converged else f"{NOT_CONVERGED} – {text}"
     figure.suptitle(
-        title,
+        text if fit.converged else f"{NOT_CONVERGED} – {text}",
+        y=1.0 - 0.1 / figure.get_size_inches()[1],
         fontsize=11.0,
         color="#1A1A1A" if fit.converged else "#B03A00",
         fontweight="normal" if fit.converged else "bold",
-        **place,
+    )
+
+
+def key_below(figure: Figure, ax: Axes, columns: int) -> None:
+    """The key of a figure at its lower edge."""
+    handles, texts = ax.get_legend_handles_labels()
+    figure.legend(
+        handles, texts, loc="lower center", ncols=columns, bbox_to_anchor=(0.5, 0.0), borderaxespad=0.2
     )
 
 

@@ -37,7 +37,9 @@ def plot_trace(fit: Fit) -> Figure:
     step = max(1, length // POINTS)
     shown = len(range(0, length, step))
     with look():
-        figure = new_figure(WIDTH, 1.0 + 1.05 * len(names))
+        figure = new_figure(
+            WIDTH, 1.0 + 1.05 * len(names), left=0.95, top=0.4, between=(0.0, 0.2), panels=(1, len(names))
+        )
         axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
         for ax, label in zip(axes, names, strict=True):
             draws = fit.draws(label)
@@ -48,9 +50,11 @@ def plot_trace(fit: Fit) -> Figure:
             for chain in range(chains):
                 time = chain * shown + np.arange(shown)
                 ax.plot(
-                    time, values[chain, ::step], color=SERIES[chain % len(SERIES)], linewidth=0.5, marker=".",
-                    markersize=2.0,
-                )  # fmt: skip
+                    time,
+                    values[chain, ::step],
+                    color=SERIES[chain % len(SERIES)],
+                    linewidth=0.6,
+                )
             for level in np.quantile(values, [0.05, 0.5, 0.95]):
                 ax.axhline(level, color="#1A1A1A", linewidth=0.8, linestyle=(0, (4, 3)))
             for boundary in range(1, chains):
@@ -59,6 +63,7 @@ def plot_trace(fit: Fit) -> Figure:
             if high > low:
                 ticks(ax.yaxis, scale, low, high, most=3)
             ax.set_ylabel(scale.label(figure_symbol(fit, label)).replace(" [", "\n["))
+            ax.yaxis.set_label_coords(-0.14, 0.5)
         axes[-1].set_xlim(-0.5, chains * shown - 0.5)
         axes[-1].set_xticks([(i + 0.5) * shown for i in range(chains)], [f"{i + 1}" for i in range(chains)])
         axes[-1].tick_params(axis="x", length=0)

@@ -24,7 +24,7 @@ def fit_updates(fit: Fit) -> dict[str, PriorUpdate]:
     if fit.problem is not None:
         transform = fit.problem.target().transform
     else:
-        positive = (before > 0.0).all(axis=0) & (after > 0.0).all(axis=0)
+        positive = np.atleast_1d(np.vstack([before, after]).min(axis=0) > 0.0)
         transform = VectorTransform.for_supports(
             [(0.0, np.inf) if is_positive else (-np.inf, np.inf) for is_positive in positive]
         )

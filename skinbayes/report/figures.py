@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from base64 import b64encode
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,11 +18,14 @@ if TYPE_CHECKING:
 
     from skinbayes.fit import Fit
 
-DENSITY = 220
-"""Dots per inch of ordinary figures: more than two image pixels for each pixel of the page."""
+PAGE_DENSITY = 92
+"""Pixels of the page for an inch of a large figure, so that its text is as large as that of the others."""
 
 MOST_PIXELS = 1800
-"""Width beyond which large figures are drawn with fewer dots per inch."""
+"""Width of a large figure, image pixels: two for each pixel of the page, less where it has many panels."""
+
+LARGE = 6.5
+"""Width above which a figure is not shrunk to the page but scrolls, inch."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +36,9 @@ class Picture:
     ----------
     key : identifier on the page
     heading, alternative, caption : texts
-    data : PNG as base64
-    width, height : of the image, pixels
+    kind : media type of the image: vectors, or pixels if there is much to draw
+    data : the image as base64
+    width, height : on the page, pixels
     large : True if it must not be shrunk to the width of a phone
     """
 
@@ -41,6 +46,7 @@ class Picture:
     heading: str
     alternative: str
     caption: str
+    kind: str
     data: str
     width: int
     height: int
@@ -93,11 +99,8 @@ def _picture(
     key: str, draw: Callable[[Fit], Figure], fit: Fit, heading: str, alternative: str, caption: str
 ) -> Picture:
     figure = draw(fit)
-    width, height = figure.get_size_inches()
-    dots = min(DENSITY, int(MOST_PIXELS / width))
-    buffer = io.BytesIO()
-    with look():
-        figure.savefig(buffer, format="png", dpi=dots)
+    width, height = (float(size) for size in figure.get_size_inches())
+    large = width > LARGE
     if not fit.converged:
         alternative = f"NOT CONVERGED. {alternative}"
     return Picture(
@@ -105,18 +108,35 @@ def _picture(
         heading=heading,
         alternative=alternative,
         caption=caption,
-        data=b64encode(_with_palette(buffer)).decode("ascii"),
-        width=int(width * dots),
-        height=int(height * dots),
-        large=float(width) > 6.5,
+        kind="image/png" if large else "image/svg+xml",
+        data=b64encode(_pixels(figure, width) if large else _vectors(figure)).decode("ascii"),
+        width=int(width * PAGE_DENSITY),
+        height=int(height * PAGE_DENSITY),
+        large=large,
     )
 
 
-def _with_palette(buffer: io.BytesIO) -> bytes:
-    """The same image with 256 colours, a third of the size."""
-    from PIL import Image
+def _pixels(figure: Figure, width: float) -> bytes:
+    buffer = io.BytesIO()
+    with look():
+        figure.savefig(
+            buffer,
+            format="png",
+            dpi=min(2 * PAGE_DENSITY, int(MOST_PIXELS / width)),
+            pil_kwargs={"compress_level": 9},
+        )
+    return buffer.getvalue()
 
-    small = io.BytesIO()
-    with Image.open(buffer) as image:
-        image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(small, format="PNG")
-    return small.getvalue()
+
+def _vectors(figure: Figure) -> bytes:
+    """The figure as SVG without date, coordinates to a hundredth of a point."""
+    from matplotlib import rc_context
+
+    buffer = io.StringIO()
+    with look(), rc_context({"svg.hashsalt": "skinbayes", "svg.fonttype": "path"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    paths = re.compile(r' d="[^"]+"')
+    return paths.sub(lambda path: _EXCESS.sub(r"\1", path.group()), buffer.getvalue()).encode()
+
+
+_EXCESS = re.compile(r"(\.[0-9]{2})[0-9]+")

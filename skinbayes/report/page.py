@@ -63,13 +63,19 @@ def render(fit: Fit) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"symbols": symbols, "links": links}
+    # both escape their text before they add markup
+    safe = jinja2.filters.do_mark_safe
+    environment.filters |= {
+        "symbols": lambda text: safe(symbols(text)),
+        "links": lambda text: safe(links(text)),
+    }
     return environment.get_template("page.html").render(context(fit))
 
 
 def context(fit: Fit) -> dict[str, Any]:
     """Everything the template shows, as text."""
     check = None if fit.problem is None else fit.problem.check()
+    together, everything = _combinations(fit, check)
     shown, folded = tables.derived_rows(fit)
     return {
         "title": str(fit.provenance["title"]) or fit.name,
@@ -82,7 +88,8 @@ def context(fit: Fit) -> dict[str, Any]:
         "products": sentences.learnt_products(fit),
         "not_learnt": sentences.not_learnt(fit),
         "ridges": sentences.posterior_ridges(fit),
-        "combinations": _combinations(fit, check),
+        "combinations": together,
+        "check": everything,
         "parameters": tables.parameter_rows(fit),
         "derived": shown,
         "derived_folded": folded,
@@ -108,18 +115,34 @@ def _setting(fit: Fit) -> str:
     return f"{values} of the {spoken_name(observable)}{symbol} informed {parameters}."
 
 
-def _combinations(fit: Fit, check: CheckReport | None) -> list[str]:
+def _combinations(fit: Fit, check: CheckReport | None) -> tuple[list[str], list[str]]:
+    """What all data together can tell, and everything that the check before sampling says about it."""
     if check is None or check.identifiability is None:
-        return []
-    return [sentences.with_symbols(fit, sentence) for sentence in check.identifiability.sentences()]
+        return [], []
+    found = check.identifiability
+    together, everything = found.joint.sentences(), found.sentences()
+    return (
+        [sentences.with_symbols(fit, sentence) for sentence in together],
+        [sentences.with_symbols(fit, sentence) for sentence in everything],
+    )
 
 
 def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
+    data, free = fit.groups["observed_data"].sizes["row"], len(fit.names)
+    said = [
+        f"Scatter of the data about the model: {str(fit.provenance['noise']).replace('_', ' ')} distribution."
+    ]
+    if free > data:
+        said.append(
+            f"There are more free parameters ({free}) than data ({data}): the priors decide what remains open."
+        )
     if check is None:
-        return [
-            "The model file or the data are gone, so that their assumptions could not be checked again for this page."
-        ]
-    return [sentences.with_symbols(fit, sentence) for sentence in (*check.setup, *check.predictions)]
+        said.append(
+            "The model file or the data are gone, so that what the data can tell was not checked again."
+        )
+    else:
+        said += [sentences.with_symbols(fit, sentence) for sentence in check.predictions]
+    return said
 
 
 def data_origin(fit: Fit) -> dict[str, Any]:

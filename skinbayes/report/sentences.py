@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 
+PLAIN = 0.05
+"""An exponent so close to one is written as one."""
+
+
 def title_name(fit: Fit, label: str) -> str:
     """Name and symbol of a parameter or derived quantity, for the start of a sentence: ``"Yield stress (dry), σ_Y (dry)"``."""
     spoken, symbol = spoken_name(label), fit.symbol(label)
@@ -89,9 +93,9 @@ def learnt_products(fit: Fit) -> list[str]:
     said = []
     for label in named_products(fit):
         meaning = str(fit.groups["posterior"][label.partition("[")[0]].attrs.get("long_name", ""))
-        explained = f" ({meaning})" if meaning else ""
+        explained = f" It is {meaning}." if meaning else ""
         said.append(
-            f"{title_name(fit, label)}{explained}: {value_sentence(fit, label)}. {narrowing_sentence(fit, label)}"
+            f"{title_name(fit, label)}: {value_sentence(fit, label)}. {narrowing_sentence(fit, label)}{explained}"
         )
     return said
 
@@ -133,11 +137,14 @@ def posterior_ridges(fit: Fit) -> list[str]:
         if not ridge.logarithmic:
             said.append(f"{start}.")
             continue
-        exponent = number(abs(ridge.exponent), 2)
-        raised = first if exponent == "1" else f"{first}^{exponent}"
-        together = f"{second} / {raised}" if ridge.exponent > 0.0 else f"{second} · {raised}"
-        spread = number(float(np.exp(1.645 * ridge.spread)), 2)
+        power = 1.0 if abs(abs(ridge.exponent) - 1.0) < PLAIN else abs(ridge.exponent)
+        raised = first if power == 1.0 else f"{first}^{number(power, 2)}"
+        sign = 1.0 if ridge.exponent > 0.0 else -1.0
+        together = f"{second} / {raised}" if sign > 0.0 else f"{second} · {raised}"
+        logarithm = np.log(fit.draws(ridge.second)) - sign * power * np.log(fit.draws(ridge.first))
+        low, high = np.quantile(logarithm, [0.05, 0.95])
         said.append(
-            f"{start}: with 90 % probability {together} is within a factor {spread} of its typical value."
+            f"{start}: {together} is known within a factor of {number(float(np.exp(high - low)), 2)}, "
+            "from end to end of its 90 % interval."
         )
     return said
