@@ -22,7 +22,6 @@ MAY_KNOW: dict[str, set[str]] = {
     "roughness": {"errors", "arrays", "constants"},
     "contact": {"errors", "arrays", "constants", "roughness"},
     "friction": {"errors", "arrays", "constants"},
-    "wetting": {"errors", "arrays", "constants", "roughness", "contact"},
     "wetting": {"errors", "arrays", "constants", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},

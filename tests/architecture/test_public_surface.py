@@ -10,18 +10,19 @@ from inspect import cleandoc
 from typing import Any
 
 import pytest
-from source_tree import PACKAGE, Definition, public_definitions
+from source_tree import Definition, public_definitions
 
 import skinbayes
 
-DOCUMENTED = ("roughness", "contact", "wetting", "friction", "wetting", "statistics", "sampling", "diagnose", "files", "forward", "problem",
+DOCUMENTED = ("roughness", "contact", "wetting", "friction", "statistics", "sampling", "diagnose", "files", "forward", "problem",
               "fit", "comparison", "plot", "report", "units", "vocabulary", "errors", "arrays")  # fmt: skip
 
+ATOM = r"(?:Pa|m|s|kg|N|J|W|rad|mol)(?:[²³⁴]|\^-?\d|\^\(\d − \w+\))?"
 UNIT = re.compile(
-    r"(?:^|\s)(1/m|1/s|Pa²?|Pa s|m|m\^-?\d|kg|s|N|N/m|m/s|J/kg|kg/m\^3|rad|dimensionless|m\^\(\d − \w+\))(?=[,;.)\s]|$)|, K(?=[,;]|$)",
+    rf"(?:^|\s)(?:1/)?\(?{ATOM}(?:[ /·]\(?(?:{ATOM}|K)\)?)*(?=[,;.)\s]|$)|dimensionless|, K(?=[,;.]|$)",
     re.MULTILINE,
 )
-"""A unit as docstrings write it, apart from the K and N of shapes."""
+"""A unit as docstrings write it: ``Pa``, ``1/m``, ``m^4``, ``J/kg``, ``dimensionless``; the K of shapes is none."""
 
 NUMERIC = {"ArrayLike", "FloatArray", "float", "int"}
 """Words of an annotation that make an argument a number or an array of numbers."""
@@ -75,7 +76,8 @@ def test_top_level_names() -> None:
 
 
 @pytest.mark.parametrize(
-    "package", ["roughness", "contact", "wetting", "statistics", "diagnose", "files", "forward", "problem", "fit"]
+    "package",
+    ["roughness", "contact", "wetting", "statistics", "diagnose", "files", "forward", "problem", "fit"],
 )
 def test_packages_list_what_they_export(package: str) -> None:
     module = import_module(f"skinbayes.{package}")
