@@ -54,6 +54,7 @@ class ForwardModel:
     evaluate : ``(inputs, table) -> {observable: (B, N)}``; ``table`` is a tabulated spectrum or None
     derived : quantities between inputs and observables (``rms_slope``, ``nominal_pressure``), same calling convention
     profiles : curves for plots
+    validate : raises InputError saying in words which inputs cannot be (evaluation itself gives NaN), or None
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
     """
 
@@ -70,6 +71,7 @@ class ForwardModel:
     accepted: tuple[str, ...] = ()
     profiles: tuple[Profile, ...] = field(default=())
     uses_surface: bool = True
+    validate: Callable[[Inputs, PowerSpectrum | None], None] | None = None
 
     def required_names(self) -> tuple[str, ...]:
         """All names that occur in ``required``, alternatives included."""

@@ -15,6 +15,7 @@ from skinbayes.forward.contact_inputs import (
     nominal_pressure_of,
     skin_of,
     spectrum_of,
+    validate_contact,
 )
 from skinbayes.roughness import PowerSpectrum, rms_slope
 
@@ -100,6 +101,7 @@ MODEL = ForwardModel(
     accepted=("wavevector", "magnification"),
     exclusive=((("wavevector",), ("magnification",)),),
     evaluate=_evaluate,
+    validate=validate_contact,
     derived=_derived,
     derived_names=("nominal_pressure", "rms_slope"),
     blocks=("rms_slope",),

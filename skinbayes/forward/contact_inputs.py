@@ -13,9 +13,16 @@ from skinbayes.contact import (
     reduced_modulus,
     sphere_contact,
     stress_variance,
+    validate_skin,
 )
 from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs
-from skinbayes.roughness import PowerSpectrum, SelfAffineSpectrum, TabulatedSpectrum, rms_height
+from skinbayes.roughness import (
+    PowerSpectrum,
+    SelfAffineSpectrum,
+    TabulatedSpectrum,
+    rms_height,
+    validate_spectrum,
+)
 
 SKIN_INPUTS = ("young_modulus_layer", "young_modulus_bulk", "layer_thickness")
 
@@ -72,6 +79,14 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
     return np.asarray(
         sphere_contact(inputs["normal_force"], inputs["sphere_radius"], modulus).mean_pressure, dtype=float
     )
+
+
+def validate_contact(inputs: Inputs, table: PowerSpectrum | None) -> None:
+    """Raise InputError naming the input of spectrum or skin that cannot be, such as a roll-off below the band."""
+    spectrum = spectrum_of(inputs, table)
+    if isinstance(spectrum, SelfAffineSpectrum):
+        validate_spectrum(spectrum)
+    validate_skin(skin_of(inputs))
 
 
 def contact_area_of(

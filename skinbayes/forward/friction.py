@@ -12,6 +12,7 @@ from skinbayes.forward.contact_inputs import (
     contact_area_of,
     nominal_pressure_of,
     spectrum_of,
+    validate_contact,
 )
 from skinbayes.friction import friction_coefficient
 from skinbayes.roughness import PowerSpectrum, rms_slope
@@ -40,6 +41,7 @@ MODEL = ForwardModel(
     required=("frictional_shear_stress", *SKIN_INPUTS, PRESSURE_ALTERNATIVES),
     optional=SKIN_DEFAULTS,
     evaluate=_evaluate,
+    validate=validate_contact,
     derived=_derived,
     derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_share"),
     blocks=("rms_slope",),

@@ -91,7 +91,7 @@ def load_problem(
     except InputError as error:
         raise InputError(f"{spec.path}: {error}") from None
     data_digest = digest_data(spec, dataset, observed, spread)
-    return Problem(
+    problem = Problem(
         spec=spec,
         forward=forward,
         free=free,
@@ -107,6 +107,12 @@ def load_problem(
         settings=dict(settings or {}),
         surface_file=surface_file,
     )
+    if forward.validate is not None:
+        try:
+            forward.validate(problem.inputs(problem.prior_medians()[np.newaxis]), table)
+        except InputError as error:
+            raise InputError(f"{spec.path}: {'at the prior medians ' if free else ''}{error}") from None
+    return problem
 
 
 def _surface(

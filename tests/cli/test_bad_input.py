@@ -143,8 +143,8 @@ def test_models_without_data(capsys):
         (["young_modulus_layer[wet]=1 MPa"], ("young_modulus_layer", "wet")),
         (["frictional_shear_stress=1 MPa"], ("frictional_shear_stress", "no input")),
         (["noise_scale=0.1"], ("noise_scale", "no input")),
-        (["wavevector_rolloff=1e2 1/m"], ("no finite value",)),
-        (["wavevector_max=1e2 1/m"], ("no finite value",)),
+        (["wavevector_rolloff=1e2 1/m"], ("wavevector_rolloff", "must lie between")),
+        (["wavevector_max=1e2 1/m"], ("wavevector_max", "must be larger")),
         (["\x1b[31m=3"], ()),
     ],
 )
