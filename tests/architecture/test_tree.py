@@ -55,7 +55,7 @@ FORBIDDEN = {
         "|".join(rf"(?<![\w.])/{folder}/" for folder in ("work", "tmp", "root", "home", "opt"))
     ),
     "address of a package registry": re.compile(
-        "|".join((r"pypi\.org", "pythonhosted", "npm" + "js", "index-" + "url"))
+        "|".join((r"pypi\.org", "python" + "hosted", "npm" + "js", "index-" + "url"))
     ),
     "unfinished mark": re.compile(
         "|".join(rf"\b{mark}\b" for mark in ("TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK"))
