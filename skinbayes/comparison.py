@@ -107,7 +107,7 @@ def compare(fits: Sequence[Fit]) -> Comparison:
     InputError
         Fewer than two fits, or fits of different data (another table, other rows or another observable).
     """
-    from skinbayes.fit.arviz_adapter import loo
+    from skinbayes.fit.arviz_adapter import loo, standard_error
 
     if len(fits) < 2:
         raise InputError(f"{len(fits)} run given; a comparison needs at least two")
@@ -134,7 +134,7 @@ def compare(fits: Sequence[Fit]) -> Comparison:
                 elpd_loo_se=result["se"],
                 p_loo=result["p"],
                 elpd_difference=float(difference.sum()),
-                elpd_difference_se=float(np.sqrt(len(difference) * difference.var())),
+                elpd_difference_se=standard_error(difference),
                 weight=float(weights[i]),
                 unreliable_rows=int((result["pareto_k"] > result["good_k"]).sum()),
                 converged=fit.converged,

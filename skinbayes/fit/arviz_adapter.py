@@ -6,6 +6,10 @@ import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+
 if TYPE_CHECKING:
     import xarray
 
@@ -21,11 +25,17 @@ def arviz() -> Any:
 def to_arviz(groups: Mapping[str, xarray.Dataset]) -> Any:
     """Return the groups as ``InferenceData`` (ArviZ below 1) or ``xarray.DataTree`` (from 1 on)."""
     az = arviz()
-    if hasattr(az, "InferenceData"):
+    if int(az.__version__.split(".")[0]) < 1:
         return az.InferenceData(**dict(groups))
     import xarray
 
     return xarray.DataTree.from_dict(dict(groups))
+
+
+def standard_error(pointwise: FloatArray) -> float:
+    """Standard error of a sum over N data: √(N · variance); NaN for a single datum. ArviZ's own differs by version."""
+    count = len(pointwise)
+    return float(np.sqrt(count * pointwise.var(ddof=1))) if count > 1 else float("nan")
 
 
 def loo(groups: Mapping[str, xarray.Dataset]) -> dict[str, Any]:
@@ -47,12 +57,12 @@ def loo(groups: Mapping[str, xarray.Dataset]) -> dict[str, Any]:
         result = az.loo(to_arviz(needed), pointwise=True)
     elpd = result.elpd_loo if hasattr(result, "elpd_loo") else result.elpd
     p = result.p_loo if hasattr(result, "p_loo") else result.p
-    pointwise = result.loo_i if hasattr(result, "loo_i") else result.elpd_i
+    pointwise = (result.loo_i if hasattr(result, "loo_i") else result.elpd_i).values.reshape(-1)
     return {
         "elpd": float(elpd),
-        "se": float(result.se),
+        "se": standard_error(pointwise),
         "p": float(p),
-        "pointwise": pointwise.values.reshape(-1),
+        "pointwise": pointwise,
         "pareto_k": result.pareto_k.values.reshape(-1),
         "good_k": float(getattr(result, "good_k", 0.7)),
     }
