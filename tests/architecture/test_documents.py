@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import tomllib
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -101,6 +102,16 @@ def test_python_example_and_the_table_of_results() -> None:
     exec(second.replace("relative_contact_area(6830.0", "result = relative_contact_area(6830.0"), area)
     assert f"{area['result']:.2e}" == "6.48e-04"
     assert "# 6.48e-4" in second
+
+
+def test_the_types_of_the_architecture_are_where_it_says() -> None:
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \| `([\w.]+)` \|", page, re.MULTILINE)
+    assert len(rows) > 5
+    for types, module in rows:
+        home = import_module(f"skinbayes.{module}")
+        missing = [name for name in re.findall(r"`(\w+)`", types) if not hasattr(home, name)]
+        assert not missing, f"skinbayes.{module} has no {', '.join(missing)}"
 
 
 def test_one_version_everywhere() -> None:
