@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skinbayes.arrays import FloatArray
 from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.scales import Scale, plain_number, round_values, scale_for
 from skinbayes.plot.style import POSTERIOR, look, new_figure, sentence_figure, set_title
@@ -16,16 +19,20 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from skinbayes.arrays import FloatArray
     from skinbayes.fit import Fit
 
 TITLE = "Posterior of parameters and pairs"
 
+BINS = 30
+
+LABEL = 0.55
+"""Distance of axis labels from their panels, inch."""
+
 DRAWS = 8000
 """Draws that contours and histograms are made of; the quantiles in the titles are those of all draws."""
 
-LARGEST = 15.0
-"""Largest width and height, inch."""
+SMALLEST, LARGEST = 4.8, 15.0
+"""Smallest and largest width and height, inch."""
 
 
 def plot_corner(fit: Fit) -> Figure:
@@ -41,60 +48,69 @@ def plot_corner(fit: Fit) -> Figure:
         Each panel on the diagonal names a parameter, its median, and its 5 % and 95 % quantiles, the same as in
         :meth:`Fit.summary`. Parameters that do not vary are left out and named below the title.
     """
-    import corner
-
     labels = [label for label in fit.names if _varies(fit.draws(label))]
     constant = [fit.symbol(label) for label in fit.names if label not in labels]
     if not labels:
         return sentence_figure(fit, TITLE, "No parameter varies: there is nothing to draw.")
-    scales = [scale_for(fit.unit(label), fit.draws(label)) for label in labels]
-    columns = []
-    for label, scale in zip(labels, scales, strict=True):
-        shown = scale.shown(fit.draws(label))
-        columns.append(np.log10(shown) if scale.logarithmic else shown)
-    draws = np.stack(columns, axis=-1)
-    draws = draws[:: max(1, len(draws) // DRAWS)]
-    count = len(labels)
-    ranges = [_range(column) for column in draws.T]
-    size = 4.0 if count == 1 else min(LARGEST, 1.2 + 1.25 * count)
+    columns = [_column(fit, label) for label in labels]
+    count = len(columns)
+    size = min(LARGEST, max(SMALLEST, 1.5 + 1.25 * count))
     font = 9.0 if count <= 8 else max(6.0, 72.0 * size / count / 12.0)
     with look():
-        figure = new_figure(size, size)
-        axes = figure.subplots(count, count, squeeze=False)
-        corner.corner(
-            draws, fig=figure, bins=30, range=ranges, color=POSTERIOR, smooth=1.0, smooth1d=1.0, max_n_ticks=3,
-            quantiles=[0.05, 0.5, 0.95], levels=(0.5, 0.9), plot_datapoints=False, fill_contours=True,
-            hist_kwargs={"linewidth": 1.4},
-        )  # fmt: skip
-        for row in range(count):
-            for column in range(row + 1):
-                _dress(axes[row, column], row, column, count, scales, ranges, font)
-            text = _panel_title(fit, labels[row])
-            axes[row, row].set_title(text, fontsize=font, loc="left", linespacing=1.25)
-        for i, label in enumerate(labels):
-            axes[count - 1, i].set_xlabel(scales[i].label(figure_symbol(fit, label)), fontsize=font)
-            if i > 0:
-                axes[i, 0].set_ylabel(scales[i].label(figure_symbol(fit, label)), fontsize=font)
-        figure.align_labels()
-        figure.subplots_adjust(
-            left=0.9 / size,
-            right=1.0 - 0.15 / size,
-            bottom=0.85 / size,
-            top=1.0 - 1.15 / size,
-            wspace=0.09,
-            hspace=0.09,
+        figure = new_figure(
+            size, size, left=0.9, right=0.15, bottom=1.2, top=0.95, between=(0.1, 0.1), panels=(count, count)
         )
+        grid = figure.add_gridspec(count, count)
+        for i, below in enumerate(columns):
+            for j, beside in enumerate(columns[: i + 1]):
+                ax = figure.add_subplot(grid[i, j])
+                _diagonal(ax, below, font) if i == j else _pair(ax, beside, below)
+                _dress(ax, beside, below if i != j else None, font, size, (i == count - 1, j == 0 and i > 0))
         set_title(figure, fit, TITLE)
         notes = ["dashed: 5 %, 50 % and 95 %"] + (
             ["contours: 50 % and 90 % of the probability"] if count > 1 else []
         )
         if constant:
-            notes.append(f"constant, not drawn: {', '.join(constant)}")
+            notes.append(fill(f"constant, not drawn: {', '.join(constant)}", int(11 * size)))
         figure.text(
-            1.0 - 0.15 / size, 1.0 - 0.45 / size, "\n".join(notes),
-            ha="right", va="top", fontsize=max(font, 8.0), linespacing=1.4, parse_math=False,
+            0.5, 0.08 / size, "\n".join(notes), ha="center", va="bottom", fontsize=8.0, linespacing=1.4, parse_math=False
         )  # fmt: skip
     return figure
+
+
+@dataclass(frozen=True)
+class _Column:
+    """One parameter: its draws as drawn (log10 where the axis is logarithmic), their range and quantiles, and texts."""
+
+    draws: FloatArray
+    scale: Scale
+    limits: tuple[float, float]
+    quantiles: FloatArray
+    axis_label: str
+    title: str
+
+
+def _column(fit: Fit, label: str) -> _Column:
+    scale, draws, unit = scale_for(fit.unit(label), fit.draws(label)), fit.draws(label), fit.unit(label)
+    q05, median, q95 = (float(q) for q in np.quantile(draws, [0.05, 0.5, 0.95]))
+    symbol = figure_symbol(fit, label)
+    range_text = interval(q05, q95, unit, typical=median, joint=" – ")
+
+    def coordinate(values: FloatArray) -> FloatArray:
+        shown = scale.shown(values)
+        return np.log10(shown) if scale.logarithmic else shown
+
+    drawn = coordinate(draws)
+    low, high = (float(q) for q in np.quantile(drawn, [0.001, 0.999]))
+    margin = 0.03 * (high - low)
+    return _Column(
+        draws=drawn[:: max(1, len(drawn) // DRAWS)],
+        scale=scale,
+        limits=(low - margin, high + margin),
+        quantiles=coordinate(np.array([q05, median, q95])),
+        axis_label=scale.label(symbol),
+        title=f"{symbol}\n{quantity(median, unit)}\n{range_text}",
+    )
 
 
 def _varies(draws: FloatArray) -> bool:
@@ -102,43 +118,51 @@ def _varies(draws: FloatArray) -> bool:
     return bool(np.isfinite(draws).all() and high - low > 1e-9 * max(abs(low), abs(high)))
 
 
-def _range(column: FloatArray) -> tuple[float, float]:
-    low, high = np.quantile(column, [0.001, 0.999])
-    margin = 0.03 * (high - low)
-    return float(low - margin), float(high + margin)
+def _diagonal(ax: Axes, column: _Column, font: float) -> None:
+    from scipy.ndimage import gaussian_filter1d
+
+    heights, edges = np.histogram(column.draws, bins=BINS, range=column.limits)
+    ax.stairs(gaussian_filter1d(heights.astype(float), 1.0), edges, color=POSTERIOR, linewidth=1.4)
+    for position in column.quantiles:
+        ax.axvline(float(position), color=POSTERIOR, linewidth=1.2, linestyle="--")
+    ax.set_title(column.title, fontsize=font, loc="left", linespacing=1.25)
+    ax.set_ylim(bottom=0.0)
+    ax.set_yticks([])
 
 
-def _panel_title(fit: Fit, label: str) -> str:
-    q05, median, q95 = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
-    unit = fit.unit(label)
-    range_text = interval(q05, q95, unit, typical=median, joint=" – ")
-    return f"{figure_symbol(fit, label)}\n{quantity(median, unit)}\n{range_text}"
+def _pair(ax: Axes, beside: _Column, below: _Column) -> None:
+    import corner
+
+    corner.hist2d(
+        beside.draws, below.draws, ax=ax, bins=BINS, range=[beside.limits, below.limits], color=POSTERIOR, smooth=1.0,
+        levels=(0.5, 0.9), plot_datapoints=False, plot_density=False, fill_contours=True,
+    )  # fmt: skip
 
 
 def _dress(
-    ax: Axes,
-    row: int,
-    column: int,
-    count: int,
-    scales: list[Scale],
-    ranges: list[tuple[float, float]],
-    font: float,
+    ax: Axes, beside: _Column, below: _Column | None, font: float, size: float, outer: tuple[bool, bool]
 ) -> None:
+    """Limits, ticks and, at the outer panels, labels."""
     ax.spines[["top", "right"]].set_visible(True)
     ax.tick_params(labelsize=font)
-    if row == count - 1:
-        _axis(ax.xaxis, scales[column], ranges[column])
-        ax.tick_params(axis="x", rotation=45)
-    else:
-        _axis(ax.xaxis, scales[column], ranges[column])
-        ax.tick_params(axis="x", labelbottom=False)
-    if row != column:
-        _axis(ax.yaxis, scales[row], ranges[row])
-        ax.tick_params(axis="y", labelleft=column == 0)
+    ax.set_xlim(beside.limits)
+    _axis(ax.xaxis, beside.scale, beside.limits)
+    ax.tick_params(axis="x", rotation=45, labelbottom=outer[0])
+    if outer[0]:
+        ax.set_xlabel(beside.axis_label, fontsize=font)
+        ax.xaxis.set_label_coords(0.5, -LABEL / (ax.get_position().height * size))
+    if below is None:
+        return
+    ax.set_ylim(below.limits)
+    _axis(ax.yaxis, below.scale, below.limits)
+    ax.tick_params(axis="y", rotation=45, labelleft=outer[1])
+    if outer[1]:
+        ax.set_ylabel(below.axis_label, fontsize=font)
+        ax.yaxis.set_label_coords(-LABEL / (ax.get_position().width * size), 0.5)
 
 
 def _axis(axis: Axis, scale: Scale, limits: tuple[float, float]) -> None:
-    """Ticks at round numbers; corner sees log10 of what a logarithmic axis shows."""
+    """Ticks at round numbers; logarithmic axes hold log10 of what they show."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
     if not scale.logarithmic:

@@ -57,6 +57,9 @@ def _panel(ax: Axes, fit: Fit, label: str, verdict: str) -> None:
     before, after = fit.draws(label, "prior"), fit.draws(label)
     scale = scale_for(fit.unit(label), before, after)
     for draws, colour, name, width in ((before, PRIOR, "prior", 1.2), (after, POSTERIOR, "posterior", 1.8)):
+        if not np.ptp(draws) > 0.0:
+            ax.axvline(float(scale.shown(draws)[0]), color=colour, linewidth=width, label=name)
+            continue
         x, density = smooth_density(scale.shown(draws), scale.logarithmic)
         ax.fill_between(x, density, color=colour, alpha=0.25, linewidth=0.0)
         ax.plot(

@@ -13,6 +13,9 @@ from skinbayes.plot.numbers import power_of_ten, prefix_of
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
+ROOM = 5
+"""Characters that an axis has room for, for each tick asked for."""
+
 WIDE = 4.0
 """Ratio of the ends of what is shown above which an axis is logarithmic."""
 
@@ -117,11 +120,17 @@ def ticks(axis: Axis, scale: Scale, low: float, high: float, most: int = 4, betw
 
     written = plain_number
     if scale.logarithmic:
-        axis.set_major_locator(FixedLocator(round_values(low, high, most)))
+        written = power_number if high / low > 3e4 else plain_number
+        fewer = most
+        while True:
+            values = round_values(low, high, fewer)
+            if fewer <= 2 or sum(len(written(value)) for value in values) <= ROOM * most:
+                break
+            fewer -= 1
+        axis.set_major_locator(FixedLocator(values))
         axis.set_minor_formatter(NullFormatter())
         if not between:
             axis.set_minor_locator(NullLocator())
-        written = power_number if high / low > 3e4 else plain_number
     else:
         axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
     axis.set_major_formatter(FuncFormatter(lambda value, _: written(value)))

@@ -8,7 +8,7 @@ from html import escape
 from skinbayes.plot.symbols import SUBSCRIPT
 
 _DOI = re.compile(r"(?:https://(?:dx\.)?doi\.org/)?(10\.[0-9]{4,9}/[^\s,;)&<>\"']*[^\s,;)&<>\"'.])")
-_POWER = re.compile(r"\^(?:\(([^()<>]+)\)|(-?[0-9.]*[0-9]))")
+_POWER = re.compile(r"\^(?:\(([^()<>&;]+)\)|(-?[0-9.]*[0-9]))")
 
 
 def symbols(text: str) -> str:
