@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from command_line_page import run
+from command_line_page import PAGE, run
 from source_tree import ROOT
 
 import skinbayes as sb
@@ -71,6 +71,12 @@ def test_check_says_what_the_readme_quotes(tmp_path: Any) -> None:
     assert len(quotes) == 3
     for quote in quotes:
         assert quote in said
+
+
+def test_the_comparison_is_the_one_of_the_command_line_page() -> None:
+    quoted = re.search(r"difference of ([\d.]+ ± [\d.]+) in predictive density", README)
+    assert quoted is not None
+    assert f"differ by {quoted[1]}." in PAGE.read_text(encoding="utf-8")
 
 
 def test_python_example_and_the_table_of_results() -> None:
