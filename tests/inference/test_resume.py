@@ -117,7 +117,9 @@ def test_a_converged_run_is_returned_at_once_and_continued_for_more(tmp_path):
     first = run_ensembles(Counting(2), SamplerOptions(seed=1, walkers=40), store=SampleStore(tmp_path))
     assert first.converged
     Counting.calls = 0
-    again = run_ensembles(Counting(2), SamplerOptions(seed=1, walkers=40), store=SampleStore(tmp_path, resume=True))
+    again = run_ensembles(
+        Counting(2), SamplerOptions(seed=1, walkers=40), store=SampleStore(tmp_path, resume=True)
+    )
     assert Counting.calls == 0
     assert same(first, again)
     assert again.report.sentence() == first.report.sentence()
