@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact._rows import as_rows, blocks
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation_grid import SeparationGrid, separation_grid
-from skinbayes.contact.separation_tables import ClosingFunction, closing_function
-from skinbayes.roughness._fields import with_axes
+from skinbayes.contact.separation_tables import closing_function
 from skinbayes.roughness.spectrum import PowerSpectrum
 
-_BLOCK = 1 << 15  # terms summed at a time: a few arrays of them fit into the cache
 _LOWEST, _HIGHEST = 1e-300, 1e150  # Pa; 0 and inf are put in afterwards
 
 
@@ -68,23 +67,40 @@ def mean_separation(
     gamma = np.asarray(area_correction, dtype=np.float64)
     with np.errstate(all="ignore"):
         possible = np.where(pressure >= 0, np.clip(pressure, _LOWEST, _HIGHEST), np.nan)
-        grid = separation_grid(spectrum, skin)
-        separation = sum_separation(
-            np.log(np.atleast_1d(possible)), grid, closing_function(with_axes(gamma, 2))
-        )
+        separation = sum_separation(np.log(np.atleast_1d(possible)), separation_grid(spectrum, skin), gamma)
         separation = separation if pressure.ndim else separation[..., 0]
         return np.where(pressure == 0, separation * np.inf, separation)[()]
 
 
-def sum_separation(log_pressure: FloatArray, grid: SeparationGrid, closing: ClosingFunction) -> FloatArray:
-    """ū for ``log_pressure`` of shape ``(..., K)`` (ln of Pa), m; γ of ``closing`` has two axes more than the batch."""
-    log_variance, inverse_variance, weight = (part[..., None, :] for part in grid)
-    batch = np.broadcast_shapes(weight.shape[:-2], log_pressure.shape[:-1], np.shape(closing.gamma)[:-2])
-    found = np.empty((*batch, log_pressure.shape[-1]))
-    step = max(1, _BLOCK // max(1, found[..., 0].size * weight.shape[-1]))
-    for first in range(0, log_pressure.shape[-1], step):
-        block = slice(first, first + step)
-        part = log_pressure[..., block, None]
-        terms = weight * closing(log_variance - 2 * part, np.exp(2 * part) * inverse_variance)
-        found[..., block] = np.ascontiguousarray(terms).sum(axis=-1)
-    return found
+def sum_separation(log_pressure: FloatArray, grid: SeparationGrid, area_correction: FloatArray) -> FloatArray:
+    """ū, m, for ``log_pressure`` of shape ``(..., K)`` (ln of Pa); γ has the shape of the batch."""
+    return _sums(log_pressure, grid, area_correction, slope=False)[0]
+
+
+def sum_separation_and_slope(
+    log_pressure: FloatArray, grid: SeparationGrid, area_correction: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """ū and dū/dln p, m, see `sum_separation`."""
+    mean, slope = _sums(log_pressure, grid, area_correction, slope=True)
+    return mean, slope
+
+
+def _sums(
+    log_pressure: FloatArray, grid: SeparationGrid, area_correction: FloatArray, slope: bool
+) -> list[FloatArray]:
+    batch = np.broadcast_shapes(grid.weight.shape[:-1], log_pressure.shape[:-1], area_correction.shape)
+    log_variance, inverse_variance, weight = (as_rows(part, batch)[:, None] for part in grid)
+    pressure = as_rows(log_pressure, batch)[..., None]
+    closing = closing_function(
+        as_rows(area_correction[..., None], batch)[:, 0] if area_correction.ndim else area_correction
+    )
+    found = [np.empty(pressure.shape[:2]) for _ in range(2 if slope else 1)]
+    for rows, columns in blocks(len(pressure), pressure.shape[1], weight.shape[-1]):
+        part = pressure[rows, columns]
+        arguments = log_variance[rows] - 2 * part, inverse_variance[rows] * np.exp(2 * part)
+        function = closing.of(rows)
+        values = function.with_slope(*arguments) if slope else (function(*arguments),)
+        for total, value in zip(found, values, strict=True):
+            value *= weight[rows]
+            total[rows, columns] = value.sum(axis=-1)
+    return [total.reshape(*batch, -1) for total in found]

@@ -22,26 +22,83 @@ from skinbayes.roughness._rules import gauss_unit
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 
 
-class _Panel(NamedTuple):
-    """Nodes on [0, 1] with their weights, quadratically dense at 0, where integrands start like a square root."""
+class Places(NamedTuple):
+    """Places in a band: shares (0 … 1) of its parts, in a measure that `resolve` stretches over ln q.
 
-    nodes: FloatArray
-    weights: FloatArray
+    Attributes
+    ----------
+    plateau : shares of the plateau, strictly between 0 and 1, dimensionless, shape ``(P,)``
+    fractal : shares of the fractal part, strictly between 0 and 1, dimensionless, shape ``(F,)``
+    whole : shares of the band of a spectrum that is a table, strictly between 0 and 1, dimensionless, shape ``(T,)``
+    """
+
+    plateau: FloatArray
+    fractal: FloatArray
+    whole: FloatArray
 
 
-def _panel(count: int, crowded: float) -> _Panel:
-    """Gauss–Legendre in s, place ``s²(1 + c)/(s + c)``: the crowding at 0 reaches up to about s = c."""
-    s, weights = gauss_unit(count)
-    nodes = np.square(s) * (1 + crowded) / (s + crowded)
-    return _Panel(nodes, weights * (1 + crowded) * s * (s + 2 * crowded) / np.square(s + crowded))
+class Band(NamedTuple):
+    """Wavevectors of a band and what belongs to them; n = P + F + 2 with the knee and the end, or T + 1 with the end.
+
+    Attributes
+    ----------
+    wavevector : q, 1/m, shape ``(..., n)``
+    stretch : dln q by d(share), dimensionless, shape ``(..., n)``; 0 at the knee and at the end
+    variance : V of all wavevectors up to q, Pa², shape ``(..., n)``
+    """
+
+    wavevector: FloatArray
+    stretch: FloatArray
+    variance: FloatArray
 
 
-_PLATEAU, _FRACTAL, _TABLE = _panel(20, 0.1), _panel(52, 0.1), _panel(128, 0.1)
 _INNER, _INNER_WEIGHTS = gauss_unit(4)
-_NO_VARIANCE = 1e-300  # Pa²; a plateau without length has V = 0 at its nodes, with weight 0
+_NO_VARIANCE = 1e-300  # Pa²; a plateau without length has V = 0 there, with weight 0
 
-# nodes of the fractal part crowd about q = 0.6/d within 1.5 of ln q, where a stiff layer makes V rise by decades
+# places of the fractal part crowd about q = 0.6/d within 1.5 of ln q, where a stiff layer makes V rise by decades
 _LAYER_PLACE, _LAYER_WIDTH = np.log(0.6), 1.5
+
+
+def resolve(spectrum: PowerSpectrum, skin: LayeredSkin, places: Places) -> Band:
+    """Wavevectors at given places of the band, with V; silences no warnings."""
+    if isinstance(spectrum, SelfAffineSpectrum):
+        q, stretch, variance = _self_affine(spectrum, skin, places.plateau, places.fractal)
+    else:
+        start, end = (np.log(with_axes(q, 1)) for q in (spectrum.wavevector_min, spectrum.wavevector_max))
+        q = np.exp(join(start + (end - start) * places.whole, end))
+        stretch = join((end - start) * np.ones_like(places.whole), 0 * end)
+        variance = stress_variance(spectrum, skin, q)
+    return Band(q, stretch, np.maximum(variance, _NO_VARIANCE))
+
+
+def _self_affine(
+    spectrum: SelfAffineSpectrum, skin: LayeredSkin, plateau_share: FloatArray, fractal_share: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    ends = (spectrum.wavevector_min, spectrum.wavevector_rolloff, spectrum.wavevector_max)
+    first, knee, last = (np.log(with_axes(end, 1)) for end in ends)
+    low, high, zero = knee - first, last - knee, 0 * knee
+    layer = _LAYER_PLACE - np.log(with_axes(skin.layer_thickness, 1)) - knee
+    # everything in ln(q/q_r) = layer + width sinh(angle)
+    start, stop = np.arcsinh(-layer / _LAYER_WIDTH), np.arcsinh((high - layer) / _LAYER_WIDTH)
+    angle = start + (stop - start) * fractal_share
+    plateau, fractal = low * (plateau_share - 1), layer + _LAYER_WIDTH * np.sinh(angle)
+    stretch = join(
+        low * np.ones_like(plateau_share), zero, _LAYER_WIDTH * (stop - start) * np.cosh(angle), zero
+    )
+    # V on the cells in between, ∫ q⁴ C E_eff² dln q
+    edges = join(-low, plateau, zero, fractal, high)
+    fractal_slope = 2 - 2 * with_axes(spectrum.hurst_exponent, 1)
+    slope = join(np.full(plateau_share.size + 1, 4.0), fractal_slope * np.ones(fractal_share.size + 1))
+    width = np.diff(edges)[..., None]
+    place = edges[..., :-1, None] + width * _INNER
+    flat = (*place.shape[:-2], -1)
+    stiffness = inverse_response(skin, np.exp(knee + place.reshape(flat)), 1)
+    power = np.exp(slope[..., None] * place) * (width * _INNER_WEIGHTS)
+    terms = np.ascontiguousarray(power.reshape(*power.shape[:-2], -1) * np.square(stiffness))
+    sums = np.cumsum(terms.reshape(*terms.shape[:-1], -1, _INNER.size).sum(axis=-1), axis=-1)
+    modulus = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), 1)
+    scale = np.pi * with_axes(spectrum.plateau_power, 1) * np.square(np.square(np.exp(knee)) * modulus)
+    return np.exp(knee + edges[..., 1:]), stretch, scale * sums
 
 
 class SeparationGrid(NamedTuple):
@@ -59,60 +116,29 @@ class SeparationGrid(NamedTuple):
     weight: FloatArray
 
 
+def _crowded(count: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss–Legendre in s for integrals over the share ``s²(1 + c)/(s + c)``: dense at 0, where integrands start like √V."""
+    s, weights = gauss_unit(count)
+    c = 0.1
+    return np.square(s) * (1 + c) / (s + c), weights * (1 + c) * s * (s + 2 * c) / np.square(s + c)
+
+
+_PLATEAU, _PLATEAU_WEIGHTS = _crowded(20)
+_FRACTAL, _FRACTAL_WEIGHTS = _crowded(52)
+_WHOLE, _WHOLE_WEIGHTS = _crowded(128)
+_PLACES = Places(_PLATEAU, _FRACTAL, _WHOLE)
+_WEIGHTS = np.concatenate([_PLATEAU_WEIGHTS, [0.0], _FRACTAL_WEIGHTS, [0.0]])
+_TABLE_WEIGHTS = np.append(_WHOLE_WEIGHTS, 0.0)
+
+
 def separation_grid(spectrum: PowerSpectrum, skin: LayeredSkin) -> SeparationGrid:
     """The grid for a spectrum and a skin, each scalar or batched; silences no warnings."""
-    if isinstance(spectrum, SelfAffineSpectrum):
-        q, measure, variance = _self_affine(spectrum, skin)
-    else:
-        start, end = (np.log(with_axes(q, 1)) for q in (spectrum.wavevector_min, spectrum.wavevector_max))
-        q = np.exp(join(start + (end - start) * _TABLE.nodes, end))
-        measure = (end - start) * _TABLE.weights
-        variance = stress_variance(spectrum, skin, q)
-    variance = np.maximum(variance, _NO_VARIANCE)
+    q, stretch, variance = resolve(spectrum, skin, _PLACES)
     compliance, fall = compliance_fall(skin, q)
-    weight = np.empty(np.broadcast_shapes(variance.shape, fall.shape))
-    weight[..., :-1] = fall[..., :-1] * measure
-    weight[..., -1] = compliance[..., -1]
-    weight *= np.sqrt(variance / np.pi)
+    measure = stretch * (_WEIGHTS if isinstance(spectrum, SelfAffineSpectrum) else _TABLE_WEIGHTS)
+    weight = fall * measure * np.sqrt(variance / np.pi)
+    weight[..., -1] = compliance[..., -1] * np.sqrt(variance[..., -1] / np.pi)
     return SeparationGrid(np.log(variance), 1 / variance, weight)
-
-
-def _self_affine(
-    spectrum: SelfAffineSpectrum, skin: LayeredSkin
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Nodes with the end of the band, the measure dln q of the nodes, and V up to the nodes and the end."""
-    ends = (spectrum.wavevector_min, spectrum.wavevector_rolloff, spectrum.wavevector_max)
-    first, knee, last = (np.log(with_axes(end, 1)) for end in ends)
-    low, high = knee - first, last - knee
-    layer = _LAYER_PLACE - np.log(with_axes(skin.layer_thickness, 1)) - knee
-    # everything in ln(q/q_r); t = t_layer + width sinh(θ)
-    start, stop = np.arcsinh(-layer / _LAYER_WIDTH), np.arcsinh((high - layer) / _LAYER_WIDTH)
-    angle = start + (stop - start) * _FRACTAL.nodes
-    fractal = layer + _LAYER_WIDTH * np.sinh(angle)
-    fractal_measure = _LAYER_WIDTH * (stop - start) * np.cosh(angle) * _FRACTAL.weights
-    plateau, zero = low * (_PLATEAU.nodes - 1), np.zeros_like(knee)
-    nodes = join(plateau, fractal, high)
-    measure = join(low * _PLATEAU.weights, fractal_measure)
-    # V on the cells between nodes, ∫ q⁴ C E_eff² dln q
-    edges = join(-low, plateau, zero, fractal, high)
-    slope = 2 - 2 * with_axes(spectrum.hurst_exponent, 1)
-    cells = _PLATEAU.nodes.size + 1
-    exponent = join(
-        np.broadcast_to(4.0, (cells,)),
-        np.broadcast_to(slope, (*slope.shape[:-1], edges.shape[-1] - cells - 1)),
-    )
-    width = np.diff(edges)[..., None]
-    place = edges[..., :-1, None] + width * _INNER
-    flat = (*place.shape[:-2], -1)
-    stiffness = inverse_response(skin, np.exp(knee + place.reshape(flat)), 1)
-    log_power = (exponent[..., None] * place).reshape(flat)
-    terms = np.exp(log_power) * np.square(stiffness) * (width * _INNER_WEIGHTS).reshape(flat)
-    sums = np.ascontiguousarray(terms).reshape(*terms.shape[:-1], -1, _INNER.size).sum(axis=-1)
-    # two cells meet at the knee, which is no node
-    sums = np.delete(np.cumsum(sums, axis=-1), cells - 1, axis=-1)
-    modulus = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), 1)
-    scale = np.pi * with_axes(spectrum.plateau_power, 1) * np.square(np.square(np.exp(knee)) * modulus)
-    return np.exp(knee + nodes), measure, scale * sums
 
 
 def join(*parts: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import erf
 
 from skinbayes.arrays import FloatArray
@@ -32,56 +33,71 @@ class ClosingFunction(NamedTuple):
 
     Attributes
     ----------
-    coefficients : of the cubic of each cell of ℓ = −2 ln x for ``e^(x²) Q``, lowest order first, dimensionless, four
-        arrays of shape ``(cells,)``; or a pair of such sets, the parts of Q that go with γ and with 3(1 − γ)
+    parts : one or two sets of cubics, each of shape ``(4, cells)``, lowest order first: ``e^(x²) Q`` on the cells of ℓ =
+        −2 ln x; if two, its parts that go with γ and with 3(1 − γ)
     gamma : γ, dimensionless
     """
 
-    coefficients: FloatArray
+    parts: tuple[FloatArray, ...]
     gamma: FloatArray
 
     def __call__(self, log_ratio: FloatArray, square: FloatArray) -> FloatArray:
-        """Q for ``log_ratio`` = ln(V/p²) and ``square`` = p²/V, dimensionless, broadcast shape."""
-        return np.asarray(self._scaled(log_ratio, slope=False)[0] * np.exp(-square))
+        """Q for ``log_ratio`` = ln(V/p²) and ``square`` = p²/V, dimensionless; both are overwritten."""
+        (value,) = self._scaled(log_ratio, slope=False)
+        value *= np.exp(np.negative(square, out=square), out=square)
+        return value
 
     def with_slope(self, log_ratio: FloatArray, square: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Q and dQ/dln p at constant V, dimensionless, each of broadcast shape."""
-        scaled, rise = self._scaled(log_ratio, slope=True)
+        """Q and dQ/dln p at constant V, dimensionless."""
+        value, rise = self._scaled(log_ratio, slope=True)
         decay = np.exp(-square)
-        return np.asarray(scaled * decay), np.asarray(-2 * (rise + square * scaled) * decay)
+        return value * decay, -2 * (rise + square * value) * decay
 
-    def _scaled(self, log_ratio: FloatArray, slope: bool) -> tuple[FloatArray, FloatArray]:
+    def of(self, rows: slice) -> ClosingFunction:
+        """The function for some of the rows of an array of γ."""
+        return self if self.gamma.ndim == 0 else ClosingFunction(self.parts, self.gamma[rows])
+
+    def _scaled(self, log_ratio: FloatArray, slope: bool) -> tuple[FloatArray, ...]:
         """``e^(x²) Q`` and, if wanted, its derivative by ℓ."""
-        # beyond the last knot Q is linear in ℓ to 1e-10; fmin keeps nan out of the index, the last term brings it back
-        inside = np.fmin(log_ratio, _LAST)
-        place = (np.maximum(inside, _FIRST) - _FIRST) * _PER_UNIT
-        cell = np.minimum(place, _CELLS - 1).astype(np.intp)
-        place = place - cell
-        if self.coefficients.ndim == 2:
-            c0, c1, c2, c3 = (part[cell] for part in self.coefficients)
-        else:
-            first, second = self.coefficients
-            c0, c1, c2, c3 = (
-                _combine(self.gamma, a[cell], b[cell]) for a, b in zip(first, second, strict=True)
-            )
-        value = ((c3 * place + c2) * place + c1) * place + c0 + self.gamma * (log_ratio - inside)
+        inside = np.fmin(log_ratio, _LAST)  # fmin keeps nan out of the index
+        place = np.fmax(inside, _FIRST)
+        place -= _FIRST
+        place *= _PER_UNIT
+        cell = place.astype(np.intp)
+        np.minimum(cell, _CELLS - 1, out=cell)
+        place -= cell
+        value = self._coefficient(3, cell)
+        rise = 3 * value if slope else value
+        for order in (2, 1, 0):
+            coefficient = self._coefficient(order, cell)
+            value *= place
+            value += coefficient
+            if slope and order:
+                rise = rise * place + order * coefficient
+        if not log_ratio.max(initial=_FIRST) <= _LAST:
+            value += self.gamma * (log_ratio - inside)  # Q is linear in ℓ to 1e-10; nan comes back
         if not slope:
-            return value, value
-        rise = ((3 * c3 * place + 2 * c2) * place + c1) * _PER_UNIT
-        return value, np.where(log_ratio > _LAST, self.gamma, rise)
+            return (value,)
+        return value, np.where(log_ratio > _LAST, self.gamma, rise * _PER_UNIT)
+
+    def _coefficient(self, order: int, cell: NDArray[np.intp]) -> FloatArray:
+        found = [part[order].take(cell) for part in self.parts]
+        return found[0] if len(found) == 1 else _combine(self.gamma, *found)
 
 
 def closing_function(area_correction: FloatArray) -> ClosingFunction:
-    """Q for γ of any shape; the same numbers to the last bit whether γ is one number or a member of an array."""
+    """Q for γ, a scalar or rows of shape ``(R,)`` that get two new last axes.
+
+    The same numbers to the last bit whether γ is one number or a member of an array.
+    """
     gamma = np.where((area_correction > 0) & (area_correction <= 1), area_correction, np.nan)
-    first, second = _parts()
-    if gamma.size == 1:
-        return ClosingFunction(_combine(gamma.reshape(-1)[0], first, second), gamma)
-    return ClosingFunction(np.stack([first, second]), gamma)
+    if gamma.ndim:
+        return ClosingFunction(_parts(), gamma[:, None, None])
+    return ClosingFunction((_combine(gamma, *_parts()),), gamma)
 
 
 def _combine(gamma: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
-    return gamma * first + 3 * (1 - gamma) * second
+    return np.asarray(gamma * first + 3 * (1 - gamma) * second)
 
 
 @lru_cache(maxsize=1)
