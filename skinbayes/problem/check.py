@@ -13,6 +13,7 @@ from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import NOISE_PARAMETERS
+from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
@@ -109,8 +110,8 @@ def _priors(problem: Problem) -> tuple[str, ...]:
         if prior is None:
             continue
         low, high = prior.interval(0.9)
-        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-        line = f"{parameter.label}: {parameter.prior_text}; 90 % between {low:.3g} and {high:.3g}{unit}."
+        ends = [format_quantity(end, parameter.unit, 3) for end in (low, high)]
+        line = f"{parameter.label}: {parameter.prior_text}; 90 % between {' and '.join(ends)}."
         if not parameter.source:
             line += " No source is given."
         said.append(line)

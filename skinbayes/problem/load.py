@@ -20,7 +20,7 @@ from skinbayes.problem.problem import Problem
 from skinbayes.problem.settings import apply_settings
 from skinbayes.roughness import TabulatedSpectrum, named_surface
 from skinbayes.statistics.noise import noise_family
-from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX
 
 
 def load_problem(
@@ -79,7 +79,14 @@ def load_problem(
         if key not in given:
             parameters.append(
                 ParameterSpec(
-                    key, "", None, None, float(value), None, "default", f"default of {forward.name}"
+                    key,
+                    QUANTITIES[key].unit,
+                    None,
+                    None,
+                    float(value),
+                    None,
+                    "default",
+                    f"default of {forward.name}",
                 )
             )
     parameters += spec.noise_parameters
@@ -134,7 +141,14 @@ def _surface(
         raise InputError(f"{spec.path}: surface.name: {error}") from None
     entries = [
         ParameterSpec(
-            key, "", None, None, float(np.asarray(getattr(surface, key))), None, "", f"surface {name}"
+            key,
+            QUANTITIES[key].unit,
+            None,
+            None,
+            float(np.asarray(getattr(surface, key))),
+            None,
+            "",
+            f"surface {name}",
         )
         for key in ROUGHNESS_INPUTS
     ]
