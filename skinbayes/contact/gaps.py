@@ -112,10 +112,10 @@ class GapDistribution:
             location, width, weight = (
                 as_rows(x, batch)[:, None] for x in (self.location, self.width, self.weight)
             )
-            gaps = as_rows(gaps, batch)[..., None]
-            total = np.empty(gaps.shape[:2])
-            for rows, columns in blocks(len(total), total.shape[1], weight.shape[-1]):
-                values = part(gaps[rows, columns], location[rows], np.sqrt(2) * width[rows])
+            gaps = as_rows(gaps, batch)
+            total = np.empty_like(gaps)
+            for rows, columns in blocks(len(gaps), gaps.shape[-1], weight.shape[-1]):
+                values = part(gaps[rows, columns, None], location[rows], np.sqrt(2) * width[rows])
                 total[rows, columns] = (weight[rows] * values).sum(axis=-1)
             return total.reshape(*batch, -1) if found.ndim else total.reshape(batch)[()]
 
