@@ -40,6 +40,7 @@ class Picture:
     data : the image as base64
     width, height : on the page, pixels
     large : True if it must not be shrunk to the width of a phone
+    narrowest : width below which a large figure scrolls rather than shrinks, pixels
     """
 
     key: str
@@ -51,6 +52,7 @@ class Picture:
     width: int
     height: int
     large: bool
+    narrowest: int
 
 
 def pictures(fit: Fit) -> dict[str, Picture]:
@@ -113,6 +115,7 @@ def _picture(
         width=int(width * PAGE_DENSITY),
         height=int(height * PAGE_DENSITY),
         large=large,
+        narrowest=int(0.75 * width * PAGE_DENSITY),
     )
 
 
