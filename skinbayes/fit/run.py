@@ -82,6 +82,7 @@ def sample(
             f"{problem.spec.path}: nothing to infer: the model needs [data] and at least one prior"
         )
     settings = SamplerOptions(seed=seed, ess=ess, cores=cores, **options)
+    settings.walkers_for(problem.dimension)  # refuses too few before anything is written
     folder = None if directory is None else Path(directory)
     if folder is not None:
         claim_run(folder, problem, resume)
