@@ -9,7 +9,7 @@ import pytest
 from source_tree import ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
 
 WORDS = {"errors", "arrays", "constants", "vocabulary"}
-PHYSICS = {"roughness", "contact", "friction", "wetting"}
+PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
 STATISTICS = {"statistics", "sampling", "diagnose"}
 
 MAY_KNOW: dict[str, set[str]] = {
@@ -23,6 +23,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "contact": {"errors", "arrays", "constants", "roughness"},
     "friction": {"errors", "arrays", "constants"},
     "wetting": {"errors", "arrays", "constants", "roughness", "contact", "friction"},
+    "lubrication": {"errors", "arrays", "constants", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
     "sampling": {"errors", "arrays", "statistics"},

@@ -14,8 +14,9 @@ from source_tree import Definition, public_definitions
 
 import skinbayes
 
-DOCUMENTED = ("roughness", "contact", "wetting", "friction", "statistics", "sampling", "diagnose", "files", "forward", "problem",
-              "fit", "comparison", "plot", "report", "units", "vocabulary", "errors", "arrays")  # fmt: skip
+DOCUMENTED = ("roughness", "contact", "wetting", "lubrication", "friction", "statistics", "sampling", "diagnose",
+              "files", "forward", "problem", "fit", "comparison", "plot", "report", "units", "vocabulary", "errors",
+              "arrays")  # fmt: skip
 
 ATOM = r"(?:Pa|m|s|kg|N|J|W|rad|mol)(?:[²³⁴]|\^-?\d|\^\(\d − \w+\))?"
 UNIT = re.compile(
@@ -30,7 +31,7 @@ NUMERIC = {"ArrayLike", "FloatArray", "float", "int"}
 
 def physics_callables() -> Iterator[tuple[str, Any]]:
     """Functions and classes that the physics packages export."""
-    for package in ("roughness", "contact", "wetting"):
+    for package in ("roughness", "contact", "wetting", "lubrication"):
         module = import_module(f"skinbayes.{package}")
         for name in module.__all__:
             if callable(found := getattr(module, name)):
