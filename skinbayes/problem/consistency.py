@@ -64,9 +64,13 @@ def check_required(
 
 
 def check_derived(
-    spec: ModelSpec, forward: ForwardModel, parameters: list[ParameterSpec], conditions: Conditions
+    spec: ModelSpec,
+    forward: ForwardModel,
+    parameters: list[ParameterSpec],
+    conditions: Conditions,
+    whole_data: bool,
 ) -> None:
-    """Refuse derived products of factors or rows that do not exist."""
+    """Refuse derived products of factors that do not exist, or of rows that the model's own data do not have."""
     if not spec.derived:
         return
     known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names)
@@ -79,7 +83,7 @@ def check_derived(
             )
         for column, levels in block.rows.items():
             unknown = set(levels) - set(conditions.labels.get(column, ()))
-            if unknown and conditions.n_rows > 1:
+            if unknown and whole_data:
                 raise InputError(
                     f"{spec.path}: derived.{name}.rows: no row has {column} = {sorted(unknown)[0]!r}"
                 )

@@ -36,7 +36,7 @@ class Conditions:
         """Which rows have one of the wanted levels in each of the named grouping columns, shape ``(n_rows,)``."""
         chosen = np.ones(self.n_rows, dtype=bool)
         for column, levels in wanted.items():
-            chosen &= np.isin(self.labels[column], list(levels))
+            chosen &= np.isin(self.labels[column], list(levels)) if column in self.labels else False
         return chosen
 
     def row_labels(self) -> list[str]:

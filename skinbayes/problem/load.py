@@ -92,7 +92,7 @@ def load_problem(
     parameters += spec.noise_parameters
     free = tuple(p for p in parameters if p.prior is not None)
     fixed = tuple(p for p in parameters if p.prior is None)
-    check_derived(spec, forward, parameters, bound)
+    check_derived(spec, forward, parameters, bound, whole_data=dataset is not None and data is None)
     try:
         plan = plan_inputs(fixed, free, bound)
     except InputError as error:

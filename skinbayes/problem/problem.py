@@ -178,9 +178,10 @@ class Problem:
                 product = np.ones((1, 1))
                 for factor, power in block.product.items():
                     product = product * np.asarray(known[factor]) ** power
-                if block.rows and product.shape[-1] > 1:
-                    product = product[:, self.conditions.matching(block.rows)]
-                quantities[name] = product
+                chosen = self.conditions.matching(block.rows)
+                if not chosen.any():  # data of the user's own without such rows
+                    continue
+                quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
         return {name: np.array(np.atleast_2d(value)) for name, value in quantities.items()}
 
     def simulate(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:

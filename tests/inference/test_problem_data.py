@@ -213,3 +213,16 @@ def test_every_shipped_model_loads_and_predicts():
         problem = load_problem(name)
         for values in problem.predict(problem.prior_medians()).values():
             assert np.isfinite(values).all()
+
+
+def test_rows_without_those_of_a_product(tmp_path):
+    rows = tmp_path / "rows.csv"
+    rows.write_text(
+        "state,normal_force [N],sphere_radius [m],friction_coefficient [1]\nwet,0.5,0.008,1.3\nwet,1,0.008,1.5\n"
+    )
+    for problem in (load_problem("forearm-glass", data=rows), load_problem("forearm-glass", conditions=rows)):
+        theta = problem.draw_prior(np.random.default_rng(3), 3)
+        found = problem.derived(theta)
+        assert "shear_stress_over_yield_stress" not in found
+        expected = theta[:, 0] / theta[:, 2] / found["rms_slope"][:, 0]
+        assert_allclose(found["shear_stress_over_modulus_slope"][:, 0], expected, rtol=1e-12)
