@@ -5,7 +5,8 @@ A run has converged if all of this holds in every coordinate, on the ranks of th
 1. the autocorrelation dies out within the kept steps, and those, summed over the ensembles, are at least 50
    autocorrelation times;
 2. correlations at lags up to half of the kept steps change that time by no more than a quarter;
-3. the effective sample size (all kept positions over the autocorrelation time) reaches what was asked for;
+3. the effective sample size (all kept positions over the autocorrelation time) reaches what was asked for, and that
+   of the 5 % and 95 % quantiles, which mix more slowly, a quarter of it: intervals are reported by these ends;
 4. R-hat between ensembles, of location and of spread, is at most 1.01;
 5. R-hat between single walkers is at most 1.05: walkers left half and half in two modes look like noise one by
    one, and ensembles of such walkers agree with each other;
@@ -44,6 +45,9 @@ TAU_CHANGE = 0.25
 
 JUDGED_STEPS = 256
 """Longer chains are thinned to between half of this and this many steps before tau is estimated."""
+
+TAIL_SHARE = 0.25
+"""Share of the effective sample size asked for that the 5 % and 95 % quantiles have to reach."""
 
 FEWER_STEPS = 64
 """The same for R-hat between ensembles and for the burn-in, which need no resolution in time."""
@@ -195,6 +199,13 @@ def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) ->
     name, size = _largest(report, -report.ess_bulk)
     if not -size >= options.ess:
         yield f"the effective sample size of {name} is {-size:.0f}, {options.ess:.0f} is asked for"
+    name, size = _largest(report, -report.ess_tail)
+    if not -size >= TAIL_SHARE * options.ess:
+        found = f"{-size:.0f}" if size < 0 else "unknown, because their autocorrelation has not died out yet"
+        yield (
+            f"the effective sample size of the 5 and 95 % quantiles of {name} is {found}, "
+            f"{TAIL_SHARE * options.ess:.0f} is asked for"
+        )
     name, value = _largest(report, report.r_hat)
     if not value <= options.r_hat:
         yield f"the ensembles disagree about {name}: R-hat {value:.3f}, at most {options.r_hat:g} is accepted"

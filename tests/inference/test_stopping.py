@@ -120,6 +120,16 @@ def test_long_agreeing_chains_pass():
     assert report.sentence().startswith("Converged after 400 steps")
 
 
+def test_quantiles_that_mix_slowly_do_not_pass():
+    # beyond its 5 and 95 % quantiles a walker stays where it is; the middle is fresh at every step
+    positions = chains(steps=400, tau=1.0, dimension=1)
+    tails = np.random.default_rng(1).random((4, 1, 64, 1)) < 0.1
+    outside = np.where(np.random.default_rng(2).random(tails.shape) < 0.5, -3.0, 3.0)
+    report = verdict(np.where(tails, outside + 0.01 * positions, positions), walkers=64)
+    assert not report.converged
+    assert any("5 and 95 % quantiles of a" in sentence for sentence in report.missing)
+
+
 def test_short_chains_do_not_pass():
     report = verdict(chains(steps=100, tau=10.0))
     assert not report.converged
