@@ -1,0 +1,122 @@
+"""Capillary bridges of a flat batch of skins against the film, each skin solved at a few Kelvin lengths at once.
+
+At a given Kelvin length d the pressure is the root of ``p = p0 + (γ_w Σcos θ/d) F(d; p)`` that is continuous from p0 as d falls
+from infinity. Along the curve everything is smooth in ``z = ln(1 + d0/d)``, which is 0 where the gap is flooded, so that
+Chebyshev polynomials in z carry the curve, and a film is found on it by Newton steps.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto
+from skinbayes.wetting._family import GapFamily, gap_family
+from skinbayes.wetting._gaps import GapSource
+from skinbayes.wetting._roots import smallest_root
+from skinbayes.wetting._types import BoolArray, IndexArray
+
+_GAPS = {"gaussian": 24, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
+_TERMS = 8192  # of a block that is solved at a time
+_REFERENCE = 3.0  # d0 in units of the mean separation at p0
+_SPANS = ((0.8, 11), (1.4, 17), (2.2, 25), (4.0, 41), (8.0, 81))
+"""Span of ln p and how many pressures interpolate it to 1e-5 or better."""
+
+
+class Curve(NamedTuple):
+    """Solved bridges of B skins.
+
+    Attributes
+    ----------
+    reference : d0, m, shape ``(B,)``
+    end : largest z, dimensionless, shape ``(B,)``
+    nodes : ln film (m) at the nodes of z, shape ``(B, M)``
+    parts : Chebyshev coefficients in z of ln film (m), ln p (Pa), ln F and ln ū (m), shape ``(B, M, 4)``
+    """
+
+    reference: FloatArray
+    end: FloatArray
+    nodes: FloatArray
+    parts: FloatArray
+
+    def at(self, film: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
+        """z and ``ln p, ln F, ln ū`` at films (m) of shape ``(B, F)``, each of that shape."""
+        target = np.log(film)
+        count = self.nodes.shape[1]
+        # the film falls as z grows; start on the chord between two nodes
+        cell = np.clip((self.nodes[:, None, :] > target[..., None]).sum(axis=-1), 1, count - 1)
+        places = 2 * lobatto(count) - 1
+        low, high = places[cell - 1], places[cell]
+        upper, lower = (np.take_along_axis(self.nodes, c, axis=1) for c in (cell - 1, cell))
+        t = low + (high - low) * np.clip((upper - target) / (upper - lower), 0.0, 1.0)
+        active = np.ones(target.shape, dtype=bool)
+        for _ in range(40):
+            value, rise = clenshaw(self.parts[..., 0], t)
+            value -= target
+            low, high = np.where(value > 0, t, low), np.where(value <= 0, t, high)
+            step = value / rise
+            following = np.where((t - step > low) & (t - step < high), t - step, (low + high) / 2)
+            active_before, active = active, active & (np.abs(step) > 1e-7)
+            t = np.where(active_before, following, t)
+            if not active.any():
+                break
+        return (t + 1) / 2 * self.end[:, None], [clenshaw(self.parts[..., i], t)[0] for i in (1, 2, 3)]
+
+
+def solve_curve(
+    source: GapSource, pressure: FloatArray, pull: FloatArray, separation: FloatArray, thinnest: FloatArray
+) -> Curve:
+    """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m."""
+    count, gaps = pressure.size, _GAPS[source.closure]
+    curve = Curve(
+        _REFERENCE * separation,
+        np.zeros(count),
+        np.full((count, gaps), np.nan),
+        np.full((count, gaps, 4), np.nan),
+    )
+    # how far up the pressures go, in units of pull/ū(p0), and how small the gaps are
+    reach, margin = np.full(count, 0.75), np.full(count, 0.97)
+    todo = np.flatnonzero(np.isfinite(pressure * pull * separation * thinnest) & (separation > 0))
+    for _ in range(20):
+        span = np.log1p(reach[todo] * pull[todo] / separation[todo] / pressure[todo]) + 1e-3
+        need = np.searchsorted([s for s, _ in _SPANS], span)
+        again = [np.empty(0, dtype=np.intp)]
+        for group in np.unique(need[need < len(_SPANS)]):
+            rows = todo[need == group]
+            start, length = np.log(pressure[rows]), span[need == group]
+            family = gap_family(start, length, source.select(rows), _SPANS[group][1])
+            end = np.log1p(curve.reference[rows] / (margin[rows] * family.gap_of_film(thinnest[rows])))
+            short = _solve_rows(curve, family, rows, pressure, pull, end)
+            thick = ~short & (curve.nodes[rows, -1] > np.log(thinnest[rows]))
+            reach[rows[short]] *= 2.5
+            margin[rows[thick]] *= 0.7
+            again.append(rows[short | thick])
+        todo = np.concatenate(again)
+        if not todo.size:
+            break
+    return curve
+
+
+def _solve_rows(
+    curve: Curve, family: GapFamily, rows: IndexArray, pressure: FloatArray, pull: FloatArray, end: FloatArray
+) -> BoolArray:
+    """Fill in the curves of some rows; tells which had too short a range of pressures."""
+    count = curve.nodes.shape[1]
+    z = end[:, None] * lobatto(count)
+    z[:, 0] = 1e-12
+    gap = curve.reference[rows][:, None] / np.expm1(z)
+    values, solved = np.empty((*gap.shape, 4)), np.empty(gap.shape, dtype=bool)
+    step = max(1, _TERMS // (count * family.parts.shape[-1] // 3))
+    for first in range(0, rows.size, step):
+        block = slice(first, first + step)
+        part, here = family.block(block), rows[block]
+        x, solved[block] = smallest_root(part, pressure[here], pull[here], gap[block])
+        filled = part.fill(x, gap[block])
+        logs = np.log([filled.film, filled.area, part.mean_separation(x)])
+        values[block] = np.stack([logs[0], x, logs[1], logs[2]], axis=-1)
+    short = np.asarray(~solved.all(axis=1))
+    curve.end[rows], curve.nodes[rows], curve.parts[rows] = end, values[..., 0], coefficients(values)
+    curve.parts[rows[short]] = np.nan
+    return short

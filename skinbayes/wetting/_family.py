@@ -1,0 +1,108 @@
+"""Gap distributions of one skin at all pressures of a range, interpolated between a few.
+
+Along a curve of films only the pressure changes. The components of the gap distribution are smooth functions of ln p, so
+that they are computed at a few pressures and interpolated by Chebyshev polynomials.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.wetting._chebyshev import coefficients, lobatto, polynomials
+from skinbayes.wetting._gaps import GapSource
+from skinbayes.wetting._mixture import Filled, Mixture, fill
+
+_GRID = np.geomspace(1e-4, 3.0, 16)  # gaps in units of the mean separation
+
+
+class GapFamily(NamedTuple):
+    """Gap distributions of B skins at pressures from ``exp(start)`` to ``exp(start + span)``.
+
+    Attributes
+    ----------
+    start, span : of ln p, p in Pa, dimensionless, shape ``(B,)``
+    parts : Chebyshev coefficients of share (dimensionless), share times centre and width (m) of the n components, one
+        after the other, and of ln ū (m), shape ``(B, K, 3 n + 1)``
+    limit : largest centre at the nodes, m, shape ``(B,)``
+    narrow : half the smallest width of each component at the nodes, m, shape ``(B, n)``
+    middle : distribution in the middle of the range, components of shape ``(B, n)``
+    """
+
+    start: FloatArray
+    span: FloatArray
+    parts: FloatArray
+    limit: FloatArray
+    narrow: FloatArray
+    middle: Mixture
+
+    def _basis(self, log_pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
+        t = 2 * (log_pressure - self.start[:, None]) / self.span[:, None] - 1
+        values, slopes = polynomials(t, self.parts.shape[1])
+        return values, slopes * (2 / self.span)[:, None, None]
+
+    def fill(self, log_pressure: FloatArray, gap: FloatArray) -> Filled:
+        """What lies below ``gap`` (m) at ln p, both of shape ``(B, F)``; slopes are along ln p."""
+        basis, rise = self._basis(log_pressure)
+        width, columns = self.parts.shape[-1] - 1, gap.shape[1]
+        value, change = ((x @ self.parts[..., :-1]).reshape(-1, width) for x in (basis, rise))
+        limit, narrow = (np.repeat(x, columns, axis=0) for x in (self.limit[:, None], self.narrow))
+        mixture, slope = _centres(value, change, width // 3, limit, narrow)
+        return Filled(*(x.reshape(gap.shape) for x in fill(mixture, gap.reshape(-1), slope)))
+
+    def block(self, rows: slice) -> GapFamily:
+        """Some of the skins."""
+        return GapFamily(
+            self.start[rows],
+            self.span[rows],
+            self.parts[rows],
+            self.limit[rows],
+            self.narrow[rows],
+            Mixture(*(x[rows] for x in self.middle)),
+        )
+
+    def gap_of_film(self, film: FloatArray) -> FloatArray:
+        """Gap (m) below which the film (m, shape ``(B,)``) lies at a pressure in the middle of the range, roughly."""
+        mean = self.mean_separation(self.start[:, None])
+        gap = mean * _GRID
+        mixture = Mixture(*(np.repeat(x, _GRID.size, axis=0) for x in self.middle))
+        films = np.log(fill(mixture, gap.reshape(-1)).film).reshape(gap.shape)
+        target = np.log(film)[:, None]
+        cell = np.clip((films < target).sum(axis=1)[:, None], 1, _GRID.size - 1)
+        (low, high), logs = (np.take_along_axis(films, c, axis=1) for c in (cell - 1, cell)), np.log(_GRID)
+        rise = (target - low) / (high - low)
+        return np.asarray((mean * np.exp(logs[cell - 1] + (logs[cell] - logs[cell - 1]) * rise))[:, 0])
+
+    def mean_separation(self, log_pressure: FloatArray) -> FloatArray:
+        """ū, m, at ln p of shape ``(B, F)``."""
+        basis, _ = self._basis(log_pressure)
+        return np.asarray(np.exp((basis * self.parts[:, None, :, -1]).sum(axis=-1)))
+
+
+def gap_family(start: FloatArray, span: FloatArray, source: GapSource, count: int) -> GapFamily:
+    """The family between ``exp(start)`` and ``exp(start + span)`` Pa from ``count`` pressures, ends included."""
+    pressure = np.exp(start[:, None] + span[:, None] * lobatto(count))
+    (share, centre, spread), mean = source.at(pressure)
+    values = np.concatenate([share, share * centre, spread, np.log(mean)[..., None]], axis=-1)
+    middle = Mixture(*(x[:, count // 2] for x in (share, centre, spread)))
+    return GapFamily(
+        start, span, coefficients(values), centre.max(axis=(1, 2)), spread.min(axis=1) / 2, middle
+    )
+
+
+def _centres(
+    value: FloatArray, change: FloatArray, n: int, limit: FloatArray, narrow: FloatArray
+) -> tuple[Mixture, Mixture]:
+    """Components and their slopes from shares, first moments and widths side by side.
+
+    A component that interpolation leaves with hardly any share has a centre and a width of rounding errors; ``limit``
+    and ``narrow``, m, shapes ``(M, 1)`` and ``(M, n)``, keep them where they do no harm.
+    """
+    share, share_rise = value[:, :n], change[:, :n]
+    raw = value[:, n : 2 * n] / share
+    centre = np.fmin(np.fmax(raw, 0.0), limit)
+    rise = np.where(centre == raw, (change[:, n : 2 * n] - raw * share_rise) / share, 0.0)
+    width = np.fmax(value[:, 2 * n :], narrow)
+    return Mixture(share, centre, width), Mixture(share_rise, rise, change[:, 2 * n :])

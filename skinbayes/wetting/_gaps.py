@@ -1,0 +1,78 @@
+"""Gap distributions of a flat batch of skins, each at pressures of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.contact import LayeredSkin, gap_distribution
+from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
+from skinbayes.roughness.tabulated import TabulatedSpectrum
+from skinbayes.wetting._mixture import Mixture
+
+Closure = Literal["gaussian", "delta"]
+
+
+@dataclass(frozen=True, eq=False)
+class GapSource:
+    """What a gap distribution is made of, apart from the pressure.
+
+    Attributes
+    ----------
+    spectrum, skin : each of no batch shape or of shape ``(B,)``
+    area_correction : γ, dimensionless, shape ``()`` or ``(B,)``
+    closure : of `gap_distribution`
+    """
+
+    spectrum: PowerSpectrum
+    skin: LayeredSkin
+    area_correction: FloatArray
+    closure: Closure
+
+    def at(self, pressure: FloatArray) -> tuple[Mixture, FloatArray]:
+        """Components, shape ``(B, K, n)``, and mean separation (m), shape ``(B, K)``, at pressures (Pa) of shape ``(B, K)``."""
+        gaps = gap_distribution(pressure, self.spectrum, self.skin, self.area_correction, self.closure)
+        # a component without weight, as all are in complete contact, may have any place
+        place = np.where(np.isfinite(gaps.location), gaps.location, 0.0)
+        width = np.where(gaps.width > 0, gaps.width, gaps.mean[..., None])
+        return Mixture(gaps.weight, place, np.where(width > 0, width, 1.0)), gaps.mean
+
+    def select(self, rows: Any) -> GapSource:
+        """The members ``rows`` of the batch."""
+        gamma = self.area_correction
+        return GapSource(
+            map_spectrum(self.spectrum, lambda value: value[rows]),
+            map_skin(self.skin, lambda value: value[rows]),
+            gamma[rows] if np.ndim(gamma) else gamma,
+            self.closure,
+        )
+
+
+def map_spectrum(spectrum: PowerSpectrum, change: Callable[[FloatArray], FloatArray]) -> PowerSpectrum:
+    """The spectrum with ``change`` applied to those of its parameters that are arrays."""
+    if isinstance(spectrum, SelfAffineSpectrum):
+        return SelfAffineSpectrum(*_changed(spectrum, change))
+    if isinstance(spectrum, TabulatedSpectrum) and np.ndim(spectrum.scale):
+        return TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, change(np.asarray(spectrum.scale)))
+    return spectrum
+
+
+def map_skin(skin: LayeredSkin, change: Callable[[FloatArray], FloatArray]) -> LayeredSkin:
+    """The skin with ``change`` applied to those of its parameters that are arrays."""
+    return LayeredSkin(*_changed(skin, change))
+
+
+def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, ...]]:
+    """Shapes of the parameters that make a batch."""
+    things: list[Any] = [skin, spectrum] if isinstance(spectrum, SelfAffineSpectrum) else [skin]
+    shapes = [np.shape(getattr(thing, field.name)) for thing in things for field in fields(thing)]
+    return [*shapes, np.shape(getattr(spectrum, "scale", 1.0))]
+
+
+def _changed(thing: Any, change: Callable[[FloatArray], FloatArray]) -> list[Any]:
+    values = [getattr(thing, field.name) for field in fields(thing)]
+    return [change(value) if np.ndim(value) else value for value in values]

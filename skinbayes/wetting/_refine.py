@@ -1,0 +1,145 @@
+"""Roots of the bridge equation with the gap distribution at each pressure itself, not interpolated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.wetting._gaps import GapSource
+from skinbayes.wetting._mixture import Filled, Mixture, fill
+
+_RUNG = 0.12  # of the ladder of ln p on which roots are told apart
+_CLOSE = 1e-12  # relative residual that is left
+_NUDGE = 1e-4  # of ln p, for slopes along it
+
+
+def filled_at(source: GapSource, log_pressure: FloatArray, gap: FloatArray) -> tuple[Filled, FloatArray]:
+    """What lies below ``gap`` (m), and ū (m), at ln p (Pa), all of shape ``(B, F)``."""
+    mixture, mean = source.at(np.exp(log_pressure))
+    n = mixture.share.shape[-1]
+    filled = fill(Mixture(*(part.reshape(-1, n) for part in mixture)), gap.reshape(-1))
+    return Filled(*(part.reshape(gap.shape) for part in filled)), mean
+
+
+def roots_at_gaps(
+    source: GapSource, pressure: FloatArray, pull: FloatArray, gap: FloatArray, largest: bool
+) -> tuple[FloatArray, FloatArray]:
+    """ln p at Kelvin lengths, and how many roots there are.
+
+    ``p − p0 − pull F(d; p)/d`` is not positive at p0 and not negative at p0 + pull/d, as F is between 0 and 1. A ladder of
+    pressures between tells the roots apart; two that lie within a rung are missed, as are all of a fold narrower than that.
+
+    Parameters
+    ----------
+    source : of B skins
+    pressure : p0, Pa, shape ``(B,)``
+    pull : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
+    gap : d, m, > 0, shape ``(B, F)``
+    largest : take the largest root instead of the smallest
+    """
+    start = np.log(pressure)
+    strength = pull[:, None] / gap / pressure[:, None]
+    end = start[:, None] + np.log1p(strength)
+    rungs = max(2, int(np.ceil(np.nanmax(end - start[:, None], initial=0.0) / _RUNG)) + 1)
+    ladder = start[:, None] + _RUNG * np.arange(rungs)
+    mixture, _ = source.at(np.exp(ladder))
+    solutions = np.zeros(gap.shape)
+    low, high = np.full(gap.shape, np.nan), np.full(gap.shape, np.nan)
+    for row in range(pressure.size):
+        each = Mixture(*(np.tile(part[row], (gap.shape[1], 1)) for part in mixture))
+        area = fill(each, np.repeat(gap[row], rungs)).area.reshape(-1, rungs)
+        total = ladder[row] - start[row] - np.log1p(strength[row][:, None] * area)
+        above = total > 0
+        above[:, 0] = False
+        # where the ladder ends below the upper bound, the bound itself is the last rung
+        above = np.concatenate([above, np.ones((gap.shape[1], 1), dtype=bool)], axis=1)
+        rises = ~above[:, :-1] & above[:, 1:]
+        falls = above[:, :-1] & ~above[:, 1:]
+        solutions[row] = rises.sum(axis=1) + falls.sum(axis=1)
+        rung = rises.shape[1] - 1 - rises[:, ::-1].argmax(axis=1) if largest else rises.argmax(axis=1)
+        low[row] = ladder[row][rung]
+        high[row] = np.append(ladder[row][1:], ladder[row][-1] + _RUNG)[rung]
+    possible = np.isfinite(low) & np.isfinite(strength)
+    found: FloatArray = np.where(possible, _bracketed(source, start, strength, gap, low, high), np.nan)
+    return found, np.where(possible, solutions, np.nan)
+
+
+def _bracketed(
+    source: GapSource,
+    start: FloatArray,
+    strength: FloatArray,
+    gap: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> FloatArray:
+    """Roots between ``low`` and ``high``, by regula falsi with the weight of a stale end halved (Illinois)."""
+
+    def residual(x: FloatArray) -> FloatArray:
+        area = filled_at(source, x, gap)[0].area
+        return np.asarray(x - start[:, None] - np.log1p(strength * area))
+
+    at_low, at_high = residual(low), residual(high)
+    x = np.where(at_high == 0, high, low)
+    active = (at_low < 0) & (at_high > 0)
+    last = np.zeros(x.shape)  # the end that moved last: 1 the upper, -1 the lower
+    for _ in range(80):
+        if not active.any():
+            break
+        following = high - at_high * (high - low) / (at_high - at_low)
+        x = np.where(active, following, x)
+        value = residual(x)
+        upper, lower = active & (value > 0), active & (value <= 0)
+        at_low = np.where(lower, value, np.where(upper & (last == 1), at_low / 2, at_low))
+        at_high = np.where(upper, value, np.where(lower & (last == -1), at_high / 2, at_high))
+        high, low = np.where(upper, x, high), np.where(lower, x, low)
+        last = np.where(upper, 1, np.where(lower, -1, last))
+        active &= (np.abs(value) > _CLOSE) & (high - low > 4e-16 * np.abs(x))
+    return x
+
+
+def refine_films(
+    source: GapSource,
+    pressure: FloatArray,
+    pull: FloatArray,
+    film: FloatArray,
+    log_pressure: FloatArray,
+    z: FloatArray,
+    reference: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Newton steps for ln p and z = ln(1 + d0/d) from an approximate solution until both equations hold to 1e-12.
+
+    Parameters
+    ----------
+    source : of B skins
+    pressure, reference : p0, Pa, and d0, m, shape ``(B,)``
+    pull : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
+    film : m, shape ``(B, F)``
+    log_pressure, z : approximate solution, p in Pa, dimensionless, shape ``(B, F)``
+    """
+    start, d0 = np.log(pressure)[:, None], reference[:, None]
+    strength = (pull / pressure)[:, None]
+    x, active = log_pressure.copy(), np.isfinite(log_pressure)
+    z = z.copy()
+    for _ in range(20):
+        gap = d0 / np.expm1(np.maximum(z, 1e-14))
+        here = filled_at(source, x, gap)[0]
+        total = 1 + strength / gap * here.area
+        r_pressure = x - start - np.log(total)
+        r_film = np.log(here.film / film)
+        active = active & (np.maximum(np.abs(r_pressure), np.abs(r_film)) > _CLOSE)
+        if not active.any():
+            break
+        beside = filled_at(source, x + _NUDGE, gap)[0]
+        area_slope, film_slope = ((b - h) / _NUDGE for b, h in zip(beside[:2], here[:2], strict=True))
+        # along z: d ln d/dz = −1/(1 − e^(−z)); 1/d itself rises by e^z/d0
+        turn = 1 / np.expm1(-z)
+        bulk = strength / total
+        a = 1 - bulk / gap * area_slope
+        b = -bulk * (np.exp(z) / d0 * here.area + here.density * turn / gap)
+        c, e = film_slope / here.film, gap * here.density * turn / here.film
+        determinant = a * e - b * c
+        step_x = np.clip((b * r_film - e * r_pressure) / determinant, -0.3, 0.3)
+        step_z = np.clip((c * r_pressure - a * r_film) / determinant, -0.3, 0.3)
+        x = np.where(active, np.maximum(x + step_x, start), x)
+        z = np.where(active, np.maximum(z + step_z, 0.0), z)
+    return x, z

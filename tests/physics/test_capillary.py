@@ -1,0 +1,319 @@
+"""Capillary bridges: the paper's numbers, brute force, limits, residuals, energy, smoothness."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from skinbayes.contact import (
+    LayeredSkin,
+    gap_distribution,
+    mean_separation,
+    relative_contact_area,
+    stress_variance,
+)
+from skinbayes.errors import InputError
+from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.wetting import capillary_state, capillary_state_at_gap, kelvin_gap
+
+SURFACE = named_surface("paper_reference")
+WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+LOAD, TENSION, SKIN_ANGLE = 6830.0, 0.0727, np.radians(80.0)
+FIELDS = ("film_thickness", "kelvin_gap", "capillary_pressure", "total_pressure", "relative_contact_area",
+          "wet_area", "mean_separation", "mean_separation_wet", "flooded", "solutions")  # fmt: skip
+
+
+def paper(film, glass=0.0, **options):
+    return capillary_state(film, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, np.radians(glass), **options)
+
+
+@pytest.mark.parametrize(
+    ("closure", "glass", "pull", "film", "separation"),
+    [
+        ("gaussian", 0, 0.62, 5.8e-6, 11.05e-6),
+        ("gaussian", 20, 0.585, 5.8e-6, 11.14e-6),
+        ("delta", 0, 0.75, 9.7e-6, 10.7e-6),
+        ("delta", 20, 0.705, 9.7e-6, 10.8e-6),
+    ],
+)
+def test_strongest_pull_of_the_paper(closure, glass, pull, film, separation):
+    # prototypes computed apart from this code; the maximum of the sharp closure is broad and bumpy
+    films = np.linspace(2e-6, 13e-6, 89)
+    state = paper(films, glass, closure=closure)
+    best = np.argmax(state.capillary_pressure)
+    rough = closure == "delta"
+    assert state.capillary_pressure[best] / LOAD == pytest.approx(pull, rel=0.03 if rough else 0.02)
+    assert films[best] == pytest.approx(film, abs=1.2e-6 if rough else 0.3e-6)
+    assert state.mean_separation[best] == pytest.approx(separation, rel=0.015 if rough else 0.01)
+
+
+def test_flooded_from_the_mean_separation_on():
+    separation = mean_separation(LOAD, SURFACE, WET)
+    assert separation == pytest.approx(13.5e-6, rel=0.005)
+    state = paper(separation * np.array([0.9999, 1.0, 5.0]))
+    np.testing.assert_array_equal(state.flooded, [0, 1, 1])
+    np.testing.assert_array_equal(state.capillary_pressure[1:], 0.0)
+    np.testing.assert_array_equal(state.kelvin_gap[1:], np.inf)
+    np.testing.assert_allclose(state.film_thickness[1:], separation, rtol=1e-12)
+    dry = relative_contact_area(LOAD, stress_variance(SURFACE, WET))
+    np.testing.assert_allclose(state.relative_contact_area, dry, rtol=5e-4)  # continuous: nothing jumps
+    np.testing.assert_allclose(state.wet_area[1:] + dry, 1.0, rtol=1e-12)
+    close = paper(separation * (1 - np.array([1e-3, 1e-4, 1e-5])))
+    # the attraction goes to zero in proportion to what is missing of the flooded film
+    np.testing.assert_allclose(close.capillary_pressure[:-1] / close.capillary_pressure[1:], 10.0, rtol=0.01)
+
+
+def brute_force(film, load, surface, skin, pull, closure):
+    """p and d by nested root finding, with quadratures over P(u) written out."""
+
+    def density(gaps):
+        def evaluate(u):
+            near, far = (u - gaps.location) / gaps.width, (u + gaps.location) / gaps.width
+            bells = np.exp(-(near**2) / 2) + np.exp(-(far**2) / 2)
+            return np.sum(gaps.weight * bells / (np.sqrt(2 * np.pi) * gaps.width))
+
+        return evaluate
+
+    def integrate(gaps, gap, power):
+        # in ln u: contacts are surrounded by narrow gaps
+        curve = density(gaps)
+        edges = np.linspace(np.log(gap) - 18.0, np.log(gap), 25)
+        return sum(
+            quad(lambda t: np.exp((1 + power) * t) * curve(np.exp(t)), a, b, epsrel=1e-10, epsabs=0)[0]
+            for a, b in pairwise(edges)
+        )
+
+    def gap_for(gaps):
+        return np.exp(
+            brentq(lambda t: np.log(integrate(gaps, np.exp(t), 1) / film), np.log(film) - 1, np.log(film) + 6)
+        )
+
+    def imbalance(log_pressure):
+        pressure = np.exp(log_pressure)
+        gaps = gap_distribution(pressure, surface, skin, closure=closure)
+        gap = gap_for(gaps)
+        return pressure - load - pull / gap * integrate(gaps, gap, 0)
+
+    pressure = np.exp(brentq(imbalance, np.log(load * (1 + 1e-6)), np.log(load * 4), xtol=1e-10))
+    return pressure, gap_for(gap_distribution(pressure, surface, skin, closure=closure))
+
+
+@pytest.mark.parametrize(
+    ("film", "load", "skin", "angles", "closure"),
+    [
+        (3e-6, 6830.0, WET, (80.0, 20.0), "gaussian"),
+        (0.4e-6, 2500.0, LayeredSkin(3e6, 60e3, 0.4, 0.5, 35e-6), (60.0, 75.0), "gaussian"),
+        (1.5e-6, 20e3, LayeredSkin(60e6, 40e3, 0.5, 0.45, 15e-6), (95.0, 10.0), "gaussian"),
+        (4e-6, 9000.0, WET, (70.0, 40.0), "delta"),
+    ],
+)
+def test_brute_force(film, load, skin, angles, closure):
+    first, second = np.radians(angles)
+    pull = TENSION * (np.cos(first) + np.cos(second))
+    pressure, gap = brute_force(film, load, SURFACE, skin, pull, closure)
+    state = capillary_state(film, load, SURFACE, skin, TENSION, first, second, closure=closure)
+    sharp = closure == "delta"  # which costs the quadrature some digits
+    assert state.total_pressure == pytest.approx(pressure, rel=1e-6 if sharp else 1e-7)
+    assert state.kelvin_gap == pytest.approx(gap, rel=1e-5 if sharp else 1e-6)
+    again = capillary_state_at_gap(gap, load, SURFACE, skin, TENSION, first, second, closure=closure)
+    assert again.film_thickness == pytest.approx(film, rel=1e-5 if sharp else 1e-6)
+
+
+@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+def test_residuals_with_the_public_gap_distribution(closure):
+    films = np.geomspace(0.05e-6, 13e-6, 9)
+    state = paper(films, 20.0, closure=closure)
+    pull = TENSION * (np.cos(SKIN_ANGLE) + np.cos(np.radians(20.0)))
+    for i, film in enumerate(films):
+        gaps = gap_distribution(state.total_pressure[i], SURFACE, WET, closure=closure)
+        wet = gaps.cumulative(state.kelvin_gap[i]) - gaps.contact_fraction
+        total = LOAD + pull / state.kelvin_gap[i] * wet
+        assert state.total_pressure[i] == pytest.approx(total, rel=1e-10)
+        assert gaps.film(state.kelvin_gap[i]) == pytest.approx(film, rel=1e-10)
+        assert state.wet_area[i] == pytest.approx(wet, rel=1e-10)
+        assert state.mean_separation[i] == pytest.approx(gaps.mean, rel=1e-10)
+        assert state.relative_contact_area[i] == pytest.approx(gaps.contact_fraction, rel=1e-6)
+    np.testing.assert_allclose(state.mean_separation_wet * state.wet_area, films, rtol=1e-10)
+    np.testing.assert_allclose(state.capillary_pressure, state.total_pressure - LOAD, rtol=1e-12)
+    np.testing.assert_array_equal(state.solutions, 1)
+
+
+def test_interpolated_solution_is_close():
+    films = np.geomspace(0.05e-6, 13.4e-6, 40)
+    exact, quick = paper(films), paper(films, refine=False)
+    for name in ("total_pressure", "relative_contact_area", "wet_area", "mean_separation"):
+        np.testing.assert_allclose(getattr(quick, name), getattr(exact, name), rtol=1e-4)
+    assert np.isnan(quick.solutions).all()
+
+
+def test_film_and_pull_along_the_gap():
+    gaps = np.geomspace(2e-6, 2e-4, 60)
+    state = capillary_state_at_gap(gaps, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0)
+    assert np.all(np.diff(state.film_thickness) > 0)
+    assert np.all(np.diff(state.wet_area) > 0)
+    assert np.all(state.wet_area + state.relative_contact_area < 1 + 1e-12)
+    assert np.all(state.mean_separation_wet < gaps)
+    # one smooth curve: no jump from one gap to the next
+    assert np.max(np.abs(np.diff(np.log(state.total_pressure)))) < 0.05
+
+
+def test_more_pull_more_contact():
+    state = capillary_state(
+        5e-6, LOAD, SURFACE, WET, np.array([0.0, 0.02, 0.05, 0.0727, 0.2]), SKIN_ANGLE, 0.0
+    )
+    assert np.all(np.diff(state.relative_contact_area) > 0)
+    assert np.all(np.diff(state.mean_separation) < 0)
+    assert state.capillary_pressure[0] == 0
+    dry = relative_contact_area(LOAD, stress_variance(SURFACE, WET))
+    assert state.relative_contact_area[0] == pytest.approx(dry, rel=1e-12)
+    weak = capillary_state(5e-6, LOAD, SURFACE, WET, np.array([1e-5, 2e-5]), SKIN_ANGLE, 0.0)
+    assert weak.capillary_pressure[1] / weak.capillary_pressure[0] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_polypropylene_has_no_bridges_and_water_fills_narrow_gaps():
+    glass = np.radians(102.0)
+    film = np.array([1e-6, 6e-6, 20e-6])
+    state = capillary_state(film, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, glass)
+    np.testing.assert_allclose(state.capillary_pressure, 0.0, atol=1e-9 * LOAD)
+    gaps = gap_distribution(LOAD, SURFACE, WET)
+    np.testing.assert_allclose(gaps.film(state.kelvin_gap[:2]), film[:2], rtol=1e-10)
+    np.testing.assert_allclose(
+        state.wet_area[:2], gaps.cumulative(state.kelvin_gap[:2]) - gaps.contact_fraction, rtol=1e-10
+    )
+    assert state.flooded[2] == 1
+    assert kelvin_gap(1e-9, SKIN_ANGLE, glass) == 0
+    # and the wetting side joins it
+    edge = np.pi - SKIN_ANGLE
+    near = capillary_state(film[1], LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, edge + np.array([-1e-6, 0.0]))
+    assert near.relative_contact_area[0] == pytest.approx(near.relative_contact_area[1], rel=1e-6)
+
+
+def test_surface_energy_is_the_work_of_the_laplace_pressure():
+    # at fixed surfaces a volume dV of water wets an area dF: γ_w Σcos dF = p_K dV, so that dF/dV = 1/d_K
+    films = np.array([0.3e-6, 2e-6, 6e-6, 10e-6])
+    state = paper(films)
+    step = 1e-3 * films
+    for i in range(films.size):
+        held = capillary_state(
+            films[i] + step[i] * np.array([-1.0, 1.0]),
+            state.total_pressure[i], SURFACE, WET, 0.0, SKIN_ANGLE, 0.0,
+        )  # fmt: skip
+        assert np.diff(held.wet_area)[0] / (2 * step[i]) == pytest.approx(1 / state.kelvin_gap[i], rel=1e-5)
+
+
+def test_bridges_act_like_a_load_of_the_same_size():
+    state = paper(4e-6)
+    pressed = capillary_state(4e-6, state.total_pressure, SURFACE, WET, 0.0, SKIN_ANGLE, 0.0)
+    for name in ("relative_contact_area", "mean_separation", "wet_area", "kelvin_gap"):
+        assert getattr(pressed, name) == pytest.approx(getattr(state, name), rel=1e-9)
+
+
+def test_hysteresis_is_seen_and_both_branches_can_be_had():
+    # sharp gaps at nanometres: the surfaces snap together
+    radius = 0.44735e-9
+    gap = kelvin_gap(radius, SKIN_ANGLE, 0.0)
+    sides = [
+        capillary_state_at_gap(gap, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, closure="delta", branch=b)
+        for b in ("approach", "retreat")
+    ]
+    assert sides[0].solutions == sides[1].solutions == 3
+    assert sides[1].total_pressure > 1.05 * sides[0].total_pressure
+    for side in sides:
+        gaps = gap_distribution(side.total_pressure, SURFACE, WET, closure="delta")
+        wet = gaps.cumulative(gap) - gaps.contact_fraction
+        total = LOAD + TENSION / radius * wet
+        assert side.total_pressure == pytest.approx(total, rel=1e-10)
+    # with the smooth closure there is one solution, whichever side one comes from
+    both = [
+        capillary_state_at_gap(gap, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, branch=b)
+        for b in ("approach", "retreat")
+    ]
+    assert both[0].solutions == 1
+    assert both[0].total_pressure == pytest.approx(both[1].total_pressure, rel=1e-11)
+
+
+def random_vectors(count, seed):
+    rng = np.random.default_rng(seed)
+
+    def scale(middle, width):
+        return middle * np.exp(rng.normal(0.0, width, count))
+
+    surface = SelfAffineSpectrum(scale(22e-6, 0.3), rng.uniform(0.65, 0.95, count), scale(1e3, 0.2),
+                                 scale(6.3e3, 0.2), scale(1e9, 0.3))  # fmt: skip
+    skin = LayeredSkin(scale(7e6, 0.5), scale(20e3, 0.4), 0.5, 0.5, scale(20e-6, 0.3))
+    return surface, skin, scale(6830.0, 0.3), scale(0.07, 0.05), rng.uniform(0.0, 0.6, count)
+
+
+@pytest.mark.parametrize("refine", [True, False])
+def test_batches_agree_with_rows_to_the_last_bit(refine):
+    surface, skin, load, tension, glass = random_vectors(5, 3)
+    films = np.geomspace(0.2e-6, 30e-6, 6)
+    batch = capillary_state(films, load, surface, skin, tension, SKIN_ANGLE, glass, refine=refine)
+    for i in range(load.size):
+        one = capillary_state(
+            films,
+            load[i],
+            SelfAffineSpectrum(*(getattr(surface, n)[i] for n in surface.__dataclass_fields__)),
+            LayeredSkin(skin.young_modulus_layer[i], skin.young_modulus_bulk[i], 0.5, 0.5, skin.layer_thickness[i]),
+            tension[i], SKIN_ANGLE, glass[i], refine=refine,
+        )  # fmt: skip
+        for name in FIELDS:
+            np.testing.assert_array_equal(getattr(batch, name)[i], getattr(one, name), err_msg=name)
+
+
+def test_interpolation_holds_over_many_skins():
+    surface, skin, load, tension, glass = random_vectors(24, 5)
+    films = mean_separation(load[:, None], surface, skin) * np.array([0.01, 0.1, 0.3, 0.5, 0.8, 0.97])
+    exact, quick = (
+        capillary_state(films, load, surface, skin, tension, SKIN_ANGLE, glass, refine=refine)
+        for refine in (True, False)
+    )
+    np.testing.assert_allclose(quick.relative_contact_area, exact.relative_contact_area, rtol=1e-3)
+    error = np.abs(quick.relative_contact_area / exact.relative_contact_area - 1)
+    assert np.median(error) < 5e-5
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_no_kinks_along_random_lines(seed):
+    direction = np.random.default_rng(seed).normal(size=7)
+
+    def gradient(half_width):
+        place = np.linspace(-half_width, half_width, 41)
+        surface = SelfAffineSpectrum(22.4e-6 * np.exp(direction[0] * place), 0.78 + 0.05 * direction[1] * place, 1e3,
+                                     6345.0, 1e9)  # fmt: skip
+        skin = LayeredSkin(
+            7e6 * np.exp(direction[2] * place), 20e3 * np.exp(direction[3] * place), 0.5, 0.5, 20e-6
+        )
+        state = capillary_state(
+            5e-6 * np.exp(0.3 * direction[4] * place)[:, None], LOAD * np.exp(direction[5] * place), surface, skin,
+            TENSION, SKIN_ANGLE, 0.3 + 0.3 * direction[6] * place, refine=False,
+        )  # fmt: skip
+        return np.diff(np.log(state.relative_contact_area[:, 0])) / np.diff(place)
+
+    # changes of the gradient from step to step shrink with the step where there is neither jump nor kink
+    wide, narrow = (np.max(np.abs(np.diff(gradient(w)))) for w in (0.08, 0.02))
+    assert narrow < 0.4 * wide + 1e-3
+
+
+def test_shapes_and_impossible_arguments():
+    assert paper(5e-6).wet_area.shape == ()
+    assert paper([5e-6]).wet_area.shape == (1,)
+    grid = capillary_state([1e-6, 5e-6, 9e-6], np.array([[3e3], [6e3]]), SURFACE, WET, TENSION, SKIN_ANGLE,
+                           np.array([0.0, 0.2, 0.4, 0.6]), refine=False)  # fmt: skip
+    assert grid.wet_area.shape == (2, 4, 3)
+    bad = paper([np.nan, -1e-6, 0.0, 5e-6])
+    for name in FIELDS:
+        np.testing.assert_array_equal(np.isnan(getattr(bad, name)), [True, True, True, False])
+    for load, tension, angle in (
+        (-1.0, TENSION, 0.0),
+        (LOAD, -0.1, 0.0),
+        (LOAD, TENSION, 4.0),
+        (np.nan, 0.07, 0.0),
+    ):
+        assert np.isnan(capillary_state(5e-6, load, SURFACE, WET, tension, SKIN_ANGLE, angle).wet_area)
+    with pytest.raises(InputError, match="closure is 'square'"):
+        paper(5e-6, closure="square")
+    with pytest.raises(InputError, match="branch is 'up'"):
+        capillary_state_at_gap(5e-6, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, branch="up")
