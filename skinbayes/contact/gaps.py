@@ -178,7 +178,7 @@ def gap_distribution(
     F(d) of 40 cells is within 5e-4 (median) and 6e-3 (all of 180 random states of skin) of that of 150 cells; the share
     out of contact below d = ū/100 within 4 %. The delta form has steps and is good to 0.01, at its steps 0.1.
 
-    Against boundary elements (half-space, p/(E* slope) from 0.005 to 0.47; layered skin, 2 to 30 kPa, q1 = 1.3e5 1/m)
+    Against boundary elements (half-space, p/(E* slope) from 0.003 to 0.3; layered skin, 2 to 30 kPa, q1 = 1.3e5 1/m)
     F as a function of d/ū is within 0.025 and 0.01; the delta form is off by 0.09 to 0.29. ū itself is
     5 to 8 % too large on a half-space; for layered skin it is 2 % (30 kPa) to 21 % (2 kPa) too large.
 

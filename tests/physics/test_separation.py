@@ -14,6 +14,7 @@ from skinbayes.contact import (
     pressure_at_separation,
     stress_variance,
 )
+from skinbayes.contact.separation_tables import closing_function
 from skinbayes.roughness import SelfAffineSpectrum, TabulatedSpectrum, named_surface, rms_height
 
 WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
@@ -76,6 +77,43 @@ def test_separation_agrees_with_nested_quadrature():
     for i in range(6):
         expected = by_quadrature(pressure[i], [x[i] for x in roughness], [x[i] for x in skin], gamma[i])
         assert found[i] == pytest.approx(expected, rel=2e-5)
+
+
+@pytest.mark.parametrize("gamma", [0.05, 0.42, 1.0])
+def test_universal_function_agrees_with_quadrature(gamma):
+    closing = closing_function(np.float64(gamma))
+    x = np.geomspace(1e-9, 24, 40)
+    found = closing(-2 * np.log(x), x**2) * np.exp(x**2)
+
+    def integrand(s, at):
+        t = at * np.exp(s)
+        weight = gamma + 3 * (1 - gamma) * erf(t) ** 2
+        return -2 * np.expm1(s) * at / t * -weight * np.exp((at - t) * (at + t))
+
+    expected = [
+        panels(lambda s, at=at: integrand(s, at), 0.0, np.log(np.hypot(at, 6.5) / at), 0.7) for at in x
+    ]
+    np.testing.assert_allclose(found, expected, rtol=5e-9)
+
+
+@pytest.mark.parametrize("gamma", [0.42, 1.0])
+def test_pressure_is_the_slope_of_the_elastic_energy(gamma):
+    # p = −dU/dū with U = (π/2) ∫ q² C E_eff A [γ + (1 − γ)A²] dq, differentiated numerically
+    roughness, skin, reach = random_parameters(5, 8)
+    for i in range(5):
+        surface = SelfAffineSpectrum(*(x[i] for x in roughness))
+        material = LayeredSkin(*(x[i] for x in skin))
+        knots = np.log([surface.wavevector_min, surface.wavevector_rolloff, surface.wavevector_max])
+        panel, weight = np.polynomial.legendre.leggauss(400)
+        log_q = np.concatenate([a + (b - a) * (panel + 1) / 2 for a, b in pairwise(knots)])
+        measure = np.concatenate([weight * (b - a) / 2 for a, b in pairwise(knots)])
+        q = np.exp(log_q)
+        p = reach[i] * np.sqrt(stress_variance(surface, material)) * np.exp([-1e-3, 0, 1e-3])
+        area = erf(p[:, None] / np.sqrt(stress_variance(surface, material, q)))
+        strength = measure * q**3 * surface.power(q) * effective_modulus(material, q)
+        energy = np.pi / 2 * np.sum(strength * area * (gamma + (1 - gamma) * area**2), axis=-1)
+        separation = mean_separation(p, surface, material, gamma)
+        assert -(energy[2] - energy[0]) / (separation[2] - separation[0]) == pytest.approx(p[1], rel=2e-4)
 
 
 def test_separation_of_the_paper():
