@@ -149,6 +149,18 @@ class Fit:
 
         return plot_prior_posterior(self)
 
+    def plot_prior_predictive(self) -> Figure:
+        """Observed values against what the priors alone predict."""
+        from skinbayes.plot import plot_prior_predictive
+
+        return plot_prior_predictive(self)
+
+    def plot_profile(self) -> Figure:
+        """Curves of the forward model with their posterior bands, such as contact area against magnification."""
+        from skinbayes.plot import plot_profile
+
+        return plot_profile(self)
+
     def save(self, path: str | Path) -> Path:
         """Write the result as one netCDF file in the ArviZ schema."""
         from skinbayes.fit.storage import save_fit

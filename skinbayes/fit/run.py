@@ -128,6 +128,9 @@ def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, An
                 "title": dataset.provenance.title,
                 "doi": list(dataset.provenance.doi),
                 "licence": dataset.provenance.licence,
+                "authors": list(dataset.provenance.authors),
+                "attribution": dataset.provenance.attribution,
+                "caveats": list(dataset.provenance.caveats),
             }
     return {
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
