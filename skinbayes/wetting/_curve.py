@@ -18,7 +18,7 @@ from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._roots import smallest_root
 from skinbayes.wetting._types import BoolArray, IndexArray
 
-_GAPS = {"gaussian": 24, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
+_GAPS = {"gaussian": 32, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
 _TERMS = 8192  # of a block that is solved at a time
 _REFERENCE = 3.0  # d0 in units of the mean separation at p0
 _SPANS = ((0.8, 11), (1.4, 17), (2.2, 25), (4.0, 41), (8.0, 81))

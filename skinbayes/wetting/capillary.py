@@ -140,7 +140,8 @@ def capillary_state(
 
     The solution is the one that is reached from the flooded gap as water evaporates: d_K falls from infinity and p is
     continuous from p0. For films of micrometres on skin it is the only one. For films well below a nanometre per nominal
-    area the pull may grow without bound for a soft layer, and several d_K may belong to the film; the largest is taken.
+    area the pull of a soft layer grows faster than the film falls: several d_K may belong to a film, of which the largest is
+    taken, and below some film (0.024 nm for the paper's skin) there is none, and the result is nan.
 
     Contact is elastic. The mean field gives the area within 1 % of boundary elements with local tractions, but ū is 3 to
     20 % too small there.
