@@ -124,14 +124,7 @@ def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, An
     if dataset is not None:
         data |= {"key": dataset.key, "sha256": dataset.sha256, "rows": dataset.n_rows}
         if dataset.provenance is not None:
-            data |= {
-                "title": dataset.provenance.title,
-                "doi": list(dataset.provenance.doi),
-                "licence": dataset.provenance.licence,
-                "authors": list(dataset.provenance.authors),
-                "attribution": dataset.provenance.attribution,
-                "caveats": list(dataset.provenance.caveats),
-            }
+            data["origin"] = dataset.provenance.model_dump()
     return {
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "model": problem.name,

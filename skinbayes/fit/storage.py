@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -174,7 +175,15 @@ def _rebuild(path: Path, provenance: Mapping[str, Any]) -> Problem | None:
             problem = load_problem(str(provenance["model_path"]))
     except (InputError, OSError, ValueError, KeyError):
         return None
-    return problem if _is_same(problem, provenance) else None
+    return _renamed(problem, provenance) if _is_same(problem, provenance) else None
+
+
+def _renamed(problem: Problem, provenance: Mapping[str, Any]) -> Problem:
+    """The problem under the names it was fitted with, not those of the copies in the run directory."""
+    spec = replace(problem.spec, name=str(provenance["model"]))
+    key = str(provenance["data"].get("key", ""))
+    dataset = None if problem.dataset is None else replace(problem.dataset, key=key or problem.dataset.key)
+    return replace(problem, spec=spec, dataset=dataset)
 
 
 def _is_same(problem: Problem, provenance: Mapping[str, Any]) -> bool:

@@ -148,20 +148,14 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
 def data_origin(fit: Fit) -> dict[str, Any]:
     """Where the data come from; what a file without provenance does not say is empty."""
     known = fit.provenance["data"]
-    dataset = None if fit.problem is None else fit.problem.dataset
-    origin = None if dataset is None else dataset.provenance
+    origin = known.get("origin", {})
+    texts = ("title", "licence", "attribution", "where", "how_read", "transformation", "spread")
     return {
         "key": str(known.get("key", "")),
         "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
         "sha256": str(known.get("sha256", "")),
-        "title": str(known.get("title", "")),
-        "doi": [str(doi) for doi in known.get("doi", [])],
-        "licence": str(known.get("licence", "")),
-        "authors": ", ".join(origin.authors) if origin else "",
-        "attribution": (origin.attribution or "") if origin else "",
-        "where": origin.where if origin else "",
-        "how_read": origin.how_read if origin else "",
-        "transformation": origin.transformation if origin else "",
-        "spread": origin.spread if origin else "",
-        "caveats": list(origin.caveats) if origin else [],
+        **{name: str(origin.get(name) or "") for name in texts},
+        "doi": [str(doi) for doi in origin.get("doi", [])],
+        "authors": ", ".join(origin.get("authors", [])),
+        "caveats": list(origin.get("caveats", [])),
     }

@@ -135,7 +135,7 @@ def test_provenance(fit: Fit) -> None:
     assert record["fingerprint"] == problem.fingerprint
     assert record["sampling"]["seed"] == 5 and record["sampling"]["converged"] is True and fit.converged
     assert record["data"]["sha256"] == problem.dataset.sha256 and len(record["data"]["sha256"]) == 64
-    assert record["data"]["doi"] and record["model_text"] == problem.spec.text
+    assert record["data"]["origin"]["doi"] and record["model_text"] == problem.spec.text
     for package in ("python", "skinbayes", "numpy", "scipy", "emcee", "arviz", "xarray", "h5py"):
         assert record["versions"][package][0].isdigit()
     assert record["versions"]["numpy"] == np.__version__
@@ -182,6 +182,8 @@ def test_no_pickle_on_disk(fit: Fit, directory: Path) -> None:
 
 def test_round_trip(fit: Fit, directory: Path, tmp_path: Path) -> None:
     from_run = load_fit(directory)
+    assert from_run.problem is not None and from_run.problem.name == "forearm-glass"
+    assert from_run.problem.dataset is not None and from_run.problem.dataset.key == "adams2007-forearm-glass"
     same_draws(fit, from_run)
     assert from_run.provenance == fit.provenance
     assert from_run.summary().equals(fit.summary())
