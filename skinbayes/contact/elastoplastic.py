@@ -104,9 +104,16 @@ def elastoplastic_contact_area(
         ratio, spread, reach = (x.reshape(-1) for x in parameters)
         elastic, plastic, non_contact = np.full((3, ratio.size), np.nan)
         yielded = (ratio >= 1) & ~np.isnan(spread)
+        # without a yield stress the image sources are at infinity; most skin of interest is of this kind
+        unlimited = (ratio == 0) & (spread == 0)
         wide = (ratio < 1) & (spread >= _SWITCH)
-        narrow = (ratio < 1) & (spread < _SWITCH)
+        narrow = (ratio < 1) & (spread < _SWITCH) & ~unlimited
         elastic[yielded], plastic[yielded], non_contact[yielded] = 0.0, 1.0, 0.0
+        elastic[unlimited], plastic[unlimited], non_contact[unlimited] = (
+            erf(reach[unlimited]),
+            0.0,
+            erfc(reach[unlimited]),
+        )
         for mask, parts in ((wide, _fourier), (narrow, _images)):
             if mask.any():
                 elastic[mask], plastic[mask], non_contact[mask] = parts(

@@ -19,9 +19,10 @@ from skinbayes.roughness import PowerSpectrum, rms_slope
 
 
 def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    area = contact_area_of(inputs, table).total
+    pressure = nominal_pressure_of(inputs)
+    area = contact_area_of({**inputs, "nominal_pressure": pressure}, table).total
     shear_stress = inputs["frictional_shear_stress"]
-    return {"friction_coefficient": friction_coefficient(shear_stress, area, nominal_pressure_of(inputs))}
+    return {"friction_coefficient": friction_coefficient(shear_stress, area, pressure)}
 
 
 def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,10 +69,16 @@ class InputPlan:
 
     def values(self, theta: FloatArray) -> FloatArray:
         """Values for a batch of parameter vectors ``(B, D)``: shape ``(B, 1)`` or ``(B, n_rows)``; ``(1, ·)`` if fixed."""
-        if (self.index < 0).all():
-            return self.fixed[np.newaxis, :]
-        free = np.ascontiguousarray(theta[:, np.maximum(self.index, 0)])
-        return np.where(self.index >= 0, free, self.fixed)
+        is_free, position, constant = self._prepared
+        if not is_free.any():
+            return constant
+        free = np.ascontiguousarray(theta[:, position])
+        return free if is_free.all() else np.where(is_free, free, constant)
+
+    @cached_property
+    def _prepared(self) -> tuple[NDArray[np.bool_], NDArray[np.intp], FloatArray]:
+        """Which rows are free, where they stand in the parameter vector, and the fixed values as one row."""
+        return self.index >= 0, np.maximum(self.index, 0), self.fixed[np.newaxis, :]
 
 
 def plan_inputs(

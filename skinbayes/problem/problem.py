@@ -12,7 +12,7 @@ import numpy as np
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
-from skinbayes.files.modelfile import NOISE_PARAMETERS, ModelSpec
+from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ForwardModel, Profile
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
@@ -23,6 +23,13 @@ from skinbayes.statistics.noise import NoiseFamily, noise_family
 if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
     from skinbayes.problem.target import PosteriorTarget
+
+_NOISE_WORDS = {
+    "noise_scale": "scale",
+    "discrepancy_scale": "discrepancy",
+    "degrees_of_freedom": "degrees_of_freedom",
+}
+"""Parameters of ``[noise]`` and what the noise families call them."""
 
 
 @dataclass(frozen=True)
@@ -148,12 +155,7 @@ class Problem:
         """
         batch, single = self._batch(theta)
         rows = conditions or self.conditions
-        inputs = self.inputs(batch, conditions)
-        with np.errstate(all="ignore"):
-            predicted = self.forward.evaluate(inputs, self.table)
-        factor = inputs.get("discrepancy_factor")
-        if factor is not None:
-            predicted[self.observable] = predicted[self.observable] * factor
+        predicted = self._evaluate(self.inputs(batch, conditions))
         shape = (batch.shape[0], rows.n_rows)
         return {
             name: _unbatch(np.array(np.broadcast_to(value, shape)), single)
@@ -188,7 +190,7 @@ class Problem:
         """Draw data of the size of the observed ones for each parameter vector, noise included; ``(N,)`` or ``(B, N)``."""
         batch, single = self._batch(theta)
         predicted = self.predict(batch)[self.observable]
-        arguments = self._noise_arguments(batch)
+        arguments = self._noise_arguments(self.inputs(batch))
         return _unbatch(self._noise.draw(rng, predicted, observed=self.observed, **arguments), single)
 
     def profile(self, profile: Profile, theta: FloatArray, row: int = 0) -> tuple[FloatArray, FloatArray]:
@@ -239,7 +241,7 @@ class Problem:
         In the unit of the observable; for logarithmic noise families the width of its ln.
         """
         batch, _ = self._batch(theta)
-        arguments = self._noise_arguments(batch)
+        arguments = self._noise_arguments(self.inputs(batch))
         arguments.pop("degrees_of_freedom", None)
         width = self._noise.width(self.predict(batch)[self.observable], observed=self.observed, **arguments)
         return np.array(np.broadcast_to(width, (1, self.conditions.n_rows))[0])
@@ -269,15 +271,24 @@ class Problem:
     def _pointwise(self, theta: FloatArray) -> FloatArray:
         if self.observed is None:
             raise InputError(f"{self.spec.path}: '{self.name}' has no data here, so there is no likelihood")
-        predicted = self.predict(theta)[self.observable]
-        density = self._noise.log_density(self.observed, predicted, **self._noise_arguments(theta))
+        inputs = self.inputs(theta)
+        predicted = np.broadcast_to(
+            self._evaluate(inputs)[self.observable], (len(theta), self.conditions.n_rows)
+        )
+        density = self._noise.log_density(self.observed, predicted, **self._noise_arguments(inputs))
         # NaN where the forward model has no answer: samplers count those apart from data that are impossible
         return np.where(np.isnan(predicted), np.nan, density)
 
-    def _noise_arguments(self, theta: FloatArray) -> dict[str, FloatArray]:
-        values = {entry.name: entry.values(theta) for entry in self._plan if entry.name in NOISE_PARAMETERS}
-        renamed: Mapping[str, str] = {"noise_scale": "scale", "discrepancy_scale": "discrepancy"}
-        arguments = {renamed.get(k, k): v for k, v in values.items() if k != "discrepancy_factor"}
+    def _evaluate(self, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        """The forward model with the discrepancy factor, if there is one; shapes as the forward model gives them."""
+        with np.errstate(all="ignore"):
+            predicted = self.forward.evaluate(inputs, self.table)
+        if "discrepancy_factor" in inputs:
+            predicted[self.observable] = predicted[self.observable] * inputs["discrepancy_factor"]
+        return predicted
+
+    def _noise_arguments(self, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        arguments = {_NOISE_WORDS[name]: inputs[name] for name in _NOISE_WORDS if name in inputs}
         if self.observed_spread is not None:
             arguments["spread"] = self.observed_spread
         return arguments
