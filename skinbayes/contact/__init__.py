@@ -1,8 +1,15 @@
-"""Contact mechanics of skin: layered elasticity, Persson's contact area, yielding, gaps, and the Hertz sphere."""
+"""Contact mechanics of skin: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_stress_variance
 from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area
+from skinbayes.contact.elliptic_contact import (
+    EllipseFactors,
+    HertzEllipse,
+    cylinder_of_ellipse,
+    ellipse_factors,
+    elliptic_contact,
+)
 from skinbayes.contact.gaps import GapDistribution, gap_distribution
 from skinbayes.contact.hertz import HertzSphere, sphere_contact
 from skinbayes.contact.layered import (
@@ -12,6 +19,13 @@ from skinbayes.contact.layered import (
     surface_response,
     validate_skin,
 )
+from skinbayes.contact.line_contact import (
+    EquivalentCylinder,
+    HertzLine,
+    cylinder_of_contact,
+    cylinder_of_sphere,
+    line_contact,
+)
 from skinbayes.contact.separation import mean_separation
 from skinbayes.contact.separation_inverse import pressure_at_separation
 from skinbayes.contact.variance import stress_variance
@@ -19,13 +33,23 @@ from skinbayes.contact.variance import stress_variance
 __all__ = [
     "AREA_CORRECTION",
     "ContactArea",
+    "EllipseFactors",
+    "EquivalentCylinder",
     "GapDistribution",
+    "HertzEllipse",
+    "HertzLine",
     "HertzSphere",
     "LayeredSkin",
     "corrected_stress_variance",
+    "cylinder_of_contact",
+    "cylinder_of_ellipse",
+    "cylinder_of_sphere",
     "effective_modulus",
     "elastoplastic_contact_area",
+    "ellipse_factors",
+    "elliptic_contact",
     "gap_distribution",
+    "line_contact",
     "mean_separation",
     "persson_contact_area",
     "pressure_at_separation",

@@ -10,7 +10,7 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.hertz import sphere_contact
 
 SQUEEZE_OUT_RATIO = np.sqrt(3 / 8)
-"""Half-width of a strip over the radius of a disk, dimensionless, that squeezes out its fluid in the same time (r0 = w √(2/3))."""
+"""Half-width of a strip over the radius of a disk, dimensionless, that squeezes out fluid in the same time (r0 = w √(2/3))."""
 
 
 class HertzLine(NamedTuple):

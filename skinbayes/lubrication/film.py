@@ -1,0 +1,223 @@
+"""The film between a cylinder and a lubricated, soft, rough solid: separation, pressures and drag at many speeds.
+
+Lengths along the surface are counted in b, pressures in p_H, separations in b²/Rc (line contact of Hertz). Reynolds'
+equation with the mean speed v/2 of the two surfaces, ``d/dx[φ_p u³/(12η) dp/dx] = (v/2) d/dx[u + Φ_s]``, becomes
+``d/dX[φ_p H³ dP/dX] = λ d/dX[H + Φ_s]``: the left side carries p_H (b²/Rc)³/(12 η b²), the right side (v/2)(b²/Rc)/b, so that
+``λ = 6 η v Rc²/(b³ p_H)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.line_contact import HertzLine, line_contact
+from skinbayes.lubrication.asperities import AsperityLaw
+from skinbayes.lubrication.drag import drag_integrals
+from skinbayes.lubrication.flow_factors import FlowFactors, TrivialFlowFactors
+from skinbayes.lubrication.grid import LineGrid, line_grid
+from skinbayes.lubrication.newton import LOAD, Law, Transport
+from skinbayes.lubrication.rheology import Rheology
+from skinbayes.lubrication.sweep import sweep
+
+NODES = 80
+"""Nodes across the contact unless told otherwise; friction is then within 0.5 % of that on a grid ten times finer."""
+
+_WEAKEST = (
+    1e-7  # of the squared roughness: below this λ the fluid carries about that share and all is linear in λ
+)
+
+
+class LubricatedFilms(NamedTuple):
+    """Films under a cylinder at K speeds; x = 0 is the middle of the cylinder and the fluid enters at negative x.
+
+    Attributes
+    ----------
+    position : x, m, shape ``(N,)``
+    separation : mean separation ū(x), m, shape ``(K, N)``
+    fluid_pressure : p_f(x), Pa, shape ``(K, N)``
+    asperity_pressure : p_a(x), Pa, shape ``(K, N)``
+    asperity_load_share : load carried by asperities over load, dimensionless, shape ``(K,)``
+    couette : friction coefficient of the shear flow, ∫φ ηv/u dx/f_N, dimensionless, shape ``(K,)``
+    pressure_flow : friction coefficient of the pressure flow, ½∫u dp_f/f_N, dimensionless, shape ``(K,)``
+    minimum_film : smallest ū, m, shape ``(K,)``
+    central_film : ū under the middle of the cylinder, m, shape ``(K,)``
+    lubrication_number : λ = 6 η v Rc²/(b³ p_H), dimensionless, shape ``(K,)``
+    load_weight : weights that integrate over x, m, shape ``(N,)``
+    """
+
+    position: FloatArray
+    separation: FloatArray
+    fluid_pressure: FloatArray
+    asperity_pressure: FloatArray
+    asperity_load_share: FloatArray
+    couette: FloatArray
+    pressure_flow: FloatArray
+    minimum_film: FloatArray
+    central_film: FloatArray
+    lubrication_number: FloatArray
+    load_weight: FloatArray
+
+
+def lubricated_films(
+    speed_viscosity_product: ArrayLike,
+    cylinder_radius: float,
+    load_per_length: float,
+    reduced_modulus: float,
+    asperities: AsperityLaw | None = None,
+    flow_factors: FlowFactors | None = None,
+    rheology: Rheology | None = None,
+    nodes: int = NODES,
+) -> LubricatedFilms:
+    """Mixed lubrication of a rigid cylinder that slides on a soft rough solid (Sect. 6 of the paper, Figs. 11, 13 and 15).
+
+    ``H = H0 + X²/2 − (1/π)∫P ln|X − X′| dX′``, ``∫P dX = π/2``, ``P = P_f + P_a(H)``,
+    ``d/dX[φ_p H³ P_f′] = λ d/dX[H + Φ_s]`` with P_f ≥ 0: where full film would pull, the fluid cavitates and the film that
+    remains is carried along without a change of its volume.
+
+    Parameters
+    ----------
+    speed_viscosity_product : η v, N/m, > 0, shape ``(K,)``; with a rheology η0 v
+    cylinder_radius : Rc, m
+    load_per_length : f_N, N/m
+    reduced_modulus : E* of the solid on the scale of the contact, Pa
+    asperities : p_a against ū, from `asperity_law`; None for smooth surfaces
+    flow_factors : None for trivial ones
+    rheology : viscosity against local shear rate v/u; None for a Newtonian liquid
+    nodes : number of places across the contact, dimensionless
+
+    Returns
+    -------
+    films : `LubricatedFilms`; nan in rows where no film was found
+
+    Notes
+    -----
+    The parabola and the liquid are continued to both sides without end: shear stress far out is counted. The drag of the
+    cavity is that of the share θ of its width that is liquid, ``ηvθ/u`` with θu constant. The reference pressure is that of
+    the cavity. Nothing is said about the range of validity here; see `stribeck_curve`.
+
+    Where λ is so small that the fluid carries less than about 1e-7 of the load, the fluid's part is scaled in proportion to
+    λ. Smooth surfaces need λ > 1e-6.
+
+    References
+    ----------
+    Persson & Scaraggi, J. Phys.: Condens. Matter 21 (2009) 185002, doi 10.1088/0953-8984/21/18/185002 (Sect. 2).
+    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9.
+
+    Examples
+    --------
+    >>> films = lubricated_films([0.1], 4.533e-3, 21.92, 20e3 / 0.75)
+    >>> print(f"{films.central_film[0]:.3e} m, {films.couette[0]:.4f}")
+    1.943e-04 m, 0.1384
+    """
+    product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
+    hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus)
+    height = float(hertz.half_width**2 / cylinder_radius)
+    per_product = lubrication_number_per_product(cylinder_radius, hertz)
+    wanted = per_product * product
+    law: Law = (
+        _no_asperities if asperities is None else asperities.scaled(height, float(hertz.maximum_pressure))
+    )
+    rough, tail = (0.0, 0.0) if asperities is None else _roughness(law)
+    number = np.maximum(wanted, _WEAKEST * rough**2)
+    grid = grid_for(float(number.min()), float(number.max()), rough, tail, nodes)
+    transport = _transport(flow_factors, rheology, height, per_product)
+    states, _ = sweep(number, grid, law, transport, 1.5 + rough)
+
+    missing = np.full(grid.position.size, np.nan)
+    pressure = np.array([missing if state is None else state.pressure for state in states])
+    approach = np.array([np.nan if state is None else state.approach for state in states])
+    film = approach[:, None] + np.square(grid.position) / 2 - pressure @ grid.kernel.T
+    carried = law(film)[0]
+    fluid = pressure - carried
+    speed = None if rheology is None else product / rheology.low_shear_viscosity
+    drag = drag_integrals(grid, film, fluid, number, height, flow_factors, rheology, speed)
+    slope = float(hertz.half_width / cylinder_radius)
+    fainter = wanted / number  # 1 but for the weakest flows, of which everything is linear in λ
+    return LubricatedFilms(
+        position=grid.position * hertz.half_width,
+        separation=film * height,
+        fluid_pressure=fluid * (hertz.maximum_pressure * fainter)[:, None],
+        asperity_pressure=carried * hertz.maximum_pressure,
+        asperity_load_share=1 - fainter * (1 - carried @ grid.weight / LOAD),
+        couette=wanted / (3 * np.pi) * slope * drag.couette,
+        pressure_flow=fainter * slope / np.pi * drag.pressure_flow,
+        minimum_film=film.min(axis=1) * height,
+        central_film=_at_middle(grid, film) * height,
+        lubrication_number=wanted,
+        load_weight=grid.weight * hertz.half_width,
+    )
+
+
+def lubrication_number_per_product(cylinder_radius: float, hertz: HertzLine) -> float:
+    """λ/(ηv) = 6 Rc²/(b³ p_H), m/N."""
+    return float(6 * cylinder_radius**2 / (hertz.half_width**3 * hertz.maximum_pressure))
+
+
+def grid_for(smallest: float, largest: float, rough: float, tail: float, nodes: int) -> LineGrid:
+    """Grid for lubrication numbers from ``smallest`` to ``largest``; ``rough``, ``tail``: H at P_a = 1 and its decay length.
+
+    The inlet is as long as fluid pressure (as λ/X³) or asperities (as exp(−X²/2 tail)) reach, the edges are resolved down to
+    the width over which the thinnest film opens, its 2/3rd power.
+    """
+    reach = 6 * np.sqrt(tail)
+    inlet = float(3 + reach + 20 * np.sqrt(largest))
+    outlet = float(2 + reach + 2 * np.sqrt(largest))
+    thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
+    return line_grid(inlet, outlet, nodes, float(np.clip(1.4 * thinnest ** (2 / 3), 2e-3, 0.15)))
+
+
+def _roughness(law: Law) -> tuple[float, float]:
+    assert isinstance(law, AsperityLaw)
+    return law.separation_at(1.0), law.decay_length
+
+
+def _no_asperities(film: FloatArray) -> tuple[FloatArray, FloatArray]:
+    zero = np.zeros_like(film)
+    return zero, zero
+
+
+def _smooth_transport(film: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    square = film * film
+    return square * film, 3 * square, film, np.ones_like(film)
+
+
+def _transport(
+    flow_factors: FlowFactors | None, rheology: Rheology | None, height: float, per_product: float
+) -> Callable[[float], Transport]:
+    """Film law at each lubrication number: conductance φ_p H³ η0/η and dragged volume H + Φ_s, with slopes."""
+    if flow_factors is None and rheology is None:
+        return lambda number: _smooth_transport
+    factors = flow_factors if flow_factors is not None else TrivialFlowFactors()
+
+    def at(number: float) -> Transport:
+        speed = 0.0 if rheology is None else number / per_product / rheology.low_shear_viscosity
+
+        def transport(film: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+            factor, factor_slope, shear, shear_slope = factors.flow(film * height)
+            cube = film**3
+            conduct = factor * cube
+            slope = 3 * factor * film * film + factor_slope * height * cube
+            if rheology is not None:
+                thinning, power = rheology.relative(speed / (film * height))
+                conduct = conduct / thinning
+                slope = slope / thinning + conduct * power / film
+            return conduct, slope, film + shear / height, 1 + shear_slope
+
+        return transport
+
+    return at
+
+
+def _at_middle(grid: LineGrid, film: FloatArray) -> FloatArray:
+    """H at X = 0: parabola through the three nearest nodes."""
+    place = int(np.clip(np.argmin(np.abs(grid.position)), 1, grid.position.size - 2))
+    x, y = grid.position[place - 1 : place + 2], film[:, place - 1 : place + 2]
+    basis = [
+        x[(i + 1) % 3] * x[(i + 2) % 3] / ((x[i] - x[(i + 1) % 3]) * (x[i] - x[(i + 2) % 3]))
+        for i in range(3)
+    ]
+    return np.asarray(y @ np.array(basis))
