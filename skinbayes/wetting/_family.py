@@ -13,7 +13,8 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.wetting._chebyshev import coefficients, lobatto, polynomials
 from skinbayes.wetting._gaps import GapSource
-from skinbayes.wetting._mixture import Filled, Mixture, fill
+from skinbayes.wetting._mixture import Filled, Mixture, cover, fill, folded_mean
+from skinbayes.wetting._types import IndexArray
 
 _GRID = np.geomspace(1e-4, 3.0, 16)  # gaps in units of the mean separation
 
@@ -29,6 +30,8 @@ class GapFamily(NamedTuple):
     limit : largest centre at the nodes, m, shape ``(B,)``
     narrow : half the smallest width of each component at the nodes, m, shape ``(B, n)``
     middle : distribution in the middle of the range, components of shape ``(B, n)``
+    reach : largest gap of each component at any node, to 1e-12 of its share, m, shape ``(B, n)``
+    rest : coefficients of share and share times mean gap (m) of a component and all after it, shape ``(B, K, 2, n)``
     """
 
     start: FloatArray
@@ -37,22 +40,34 @@ class GapFamily(NamedTuple):
     limit: FloatArray
     narrow: FloatArray
     middle: Mixture
+    reach: FloatArray
+    rest: FloatArray
 
     def _basis(self, log_pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
         t = 2 * (log_pressure - self.start[:, None]) / self.span[:, None] - 1
         values, slopes = polynomials(t, self.parts.shape[1])
         return values, slopes * (2 / self.span)[:, None, None]
 
-    def fill(self, log_pressure: FloatArray, gap: FloatArray) -> Filled:
-        """What lies below ``gap`` (m) at ln p, both of shape ``(B, F)``; slopes are along ln p."""
+    def at(self, log_pressure: FloatArray) -> tuple[Mixture, Mixture]:
+        """Distributions, and their derivatives along ln p, at ln p of shape ``(B, F)``; shapes are ``(B F, n)``."""
         basis, rise = self._basis(log_pressure)
-        width, columns = self.parts.shape[-1] - 1, gap.shape[1]
+        width, columns = self.parts.shape[-1] - 1, log_pressure.shape[1]
         value, change = ((x @ self.parts[..., :-1]).reshape(-1, width) for x in (basis, rise))
         limit, narrow = (np.repeat(x, columns, axis=0) for x in (self.limit[:, None], self.narrow))
-        mixture, slope = _centres(value, change, width // 3, limit, narrow)
-        return Filled(*(x.reshape(gap.shape) for x in fill(mixture, gap.reshape(-1), slope)))
+        return _centres(value, change, width // 3, limit, narrow)
 
-    def block(self, rows: slice) -> GapFamily:
+    def fill(self, log_pressure: FloatArray, gap: FloatArray) -> Filled:
+        """What lies below ``gap`` (m) at ln p, both of shape ``(B, F)``; slopes are left 0."""
+        mixture, _ = self.at(log_pressure)
+        return Filled(*(x.reshape(gap.shape) for x in fill(mixture, gap.reshape(-1))))
+
+    def cover(self, log_pressure: FloatArray, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Area below ``gap`` (m) and its derivative along ln p, all of shape ``(B, F)``."""
+        mixture, slope = self.at(log_pressure)
+        area, rise = cover(mixture, gap.reshape(-1), slope)
+        return area.reshape(gap.shape), rise.reshape(gap.shape)
+
+    def block(self, rows: IndexArray) -> GapFamily:
         """Some of the skins."""
         return GapFamily(
             self.start[rows],
@@ -61,6 +76,30 @@ class GapFamily(NamedTuple):
             self.limit[rows],
             self.narrow[rows],
             Mixture(*(x[rows] for x in self.middle)),
+            self.reach[rows],
+            self.rest[rows],
+        )
+
+    def components_above(self, gap: FloatArray) -> IndexArray:
+        """How many of the first components reach above ``gap`` (m, shape ``(B,)``), in steps of 8."""
+        n = self.reach.shape[1]
+        above = self.reach >= gap[:, None]
+        last = np.where(above.any(axis=1), n - above[:, ::-1].argmax(axis=1), 0)
+        return np.minimum(-(-last // 8) * 8, n)
+
+    def lumped(self, keep: int) -> GapFamily:
+        """The family with all components from ``keep`` on in one, exact for gaps that these do not reach."""
+        n = self.reach.shape[1]
+        if keep >= n - 1:
+            return self
+        share, moment, width = (self.parts[..., i * n : i * n + keep] for i in range(3))
+        lump = self.rest[..., keep]
+        narrow = np.zeros_like(lump[..., :1])
+        narrow[:, 0, 0] = 0.01 * lump[:, 0, 1] / lump[:, 0, 0]
+        columns = [share, lump[..., :1], moment, lump[..., 1:], width, narrow, self.parts[..., -1:]]
+        widths = np.concatenate([self.narrow[:, :keep], narrow[:, 0] / 2], axis=1)
+        return self._replace(
+            parts=np.concatenate(columns, axis=-1), narrow=widths, reach=self.reach[:, : keep + 1]
         )
 
     def gap_of_film(self, film: FloatArray) -> FloatArray:
@@ -87,8 +126,18 @@ def gap_family(start: FloatArray, span: FloatArray, source: GapSource, count: in
     (share, centre, spread), mean = source.at(pressure)
     values = np.concatenate([share, share * centre, spread, np.log(mean)[..., None]], axis=-1)
     middle = Mixture(*(x[:, count // 2] for x in (share, centre, spread)))
+    mean_gap = folded_mean(centre, spread)
+    after = [np.cumsum(x[..., ::-1], axis=-1)[..., ::-1] for x in (share, share * mean_gap)]
+    rest = coefficients(np.concatenate(after, axis=-1))
     return GapFamily(
-        start, span, coefficients(values), centre.max(axis=(1, 2)), spread.min(axis=1) / 2, middle
+        start,
+        span,
+        coefficients(values),
+        centre.max(axis=(1, 2)),
+        spread.min(axis=1) / 2,
+        middle,
+        (centre + 7 * spread).max(axis=1),
+        rest.reshape(*rest.shape[:-1], 2, -1),
     )
 
 

@@ -80,6 +80,33 @@ class Filled(NamedTuple):
     film_slope: FloatArray
 
 
+def folded_mean(centre: FloatArray, width: FloatArray) -> FloatArray:
+    """Mean of folded normal distributions, m."""
+    z = centre / width
+    density = _PEAK * np.exp(-0.5 * np.square(z))
+    return centre * (1 - 2 * upper_tail(z, density)) + 2 * width * density
+
+
+def cover(mixture: Mixture, gap: FloatArray, slope: Mixture) -> tuple[FloatArray, FloatArray]:
+    """Area and area slope of `fill` alone, for a few thousand elements, in two thirds of its time."""
+    share, centre, width = mixture
+    inverse = 1 / width
+    z = centre * inverse
+    s = np.minimum(gap[:, None] * inverse, z + _FAR)
+    a, b = s - z, s + z
+    pa, pb = (_PEAK * np.exp(-0.5 * np.square(x)) for x in (a, b))
+    area = upper_tail(np.abs(a), pa)
+    area = np.where(a > 0, 1 - area, area)
+    area -= upper_tail(b, pb)
+    a *= pa
+    b *= pb
+    a += b
+    pb -= pa
+    rise = share * (pb * slope.centre - a * slope.width) * inverse + slope.share * area
+    area *= share
+    return area.sum(axis=-1), rise.sum(axis=-1)
+
+
 def fill(mixture: Mixture, gap: FloatArray, slope: Mixture | None = None) -> Filled:
     """Fill all that lies below ``gap`` with water.
 

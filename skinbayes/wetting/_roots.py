@@ -34,10 +34,10 @@ def smallest_root(
     lower, upper = x.copy(), np.broadcast_to(top, gap.shape).copy()
     active = np.ones(gap.shape, dtype=bool)
     for _ in range(60):
-        filled = family.fill(x, gap)
-        total = 1 + strength * filled.area
+        area, slope = family.cover(x, gap)
+        total = 1 + strength * area
         climb = ground + np.log(total) - x
-        gain = strength * filled.area_slope / total
+        gain = strength * slope / total
         lower, upper = np.where(climb >= 0, x, lower), np.where(climb < 0, x, upper)
         newton = climb / np.where(gain < 1, 1 - gain, 1.0)
         stride = _STRIDE * np.abs(climb)
