@@ -14,7 +14,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelschema import DerivedBlock, GridBlock, ModelBlock
 from skinbayes.files.parameter_block import ParameterSpec, parse_parameter, parse_value
-from skinbayes.files.toml_text import line_of, read_toml
+from skinbayes.files.toml_text import explain, line_of, read_toml
 from skinbayes.statistics.noise import NOISE_FAMILIES
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
 
@@ -99,7 +99,7 @@ def load_model(name: str | Path) -> ModelSpec:
     try:
         block = ModelBlock.model_validate(content)
     except ValidationError as error:
-        raise InputError(_explain(error, path, text)) from None
+        raise InputError(explain(error, path, text, ModelBlock.model_fields)) from None
 
     def where(*keys: str) -> str:
         line = line_of(text, keys)
@@ -235,23 +235,3 @@ def _read_grid(name: str, grid: GridBlock, where: str) -> FloatArray:
     if grid.linspace is not None:
         return np.linspace(numbers[0], numbers[1], grid.points or 2)
     return np.array(numbers, dtype=float)
-
-
-def _explain(error: ValidationError, path: Path, text: str) -> str:
-    """One sentence for the first problem, with how many more there are."""
-    problems = error.errors()
-    first = problems[0]
-    keys = [str(part) for part in first["loc"] if not isinstance(part, int)]
-    line = line_of(text, keys) if keys else None
-    place = f"{path}{f', line {line}' if line else ''}: {'.'.join(keys)}".rstrip(": ")
-    if first["type"] == "extra_forbidden":
-        known = ModelBlock.model_fields if len(keys) == 1 else {}
-        said = f"unknown key.{suggestions(keys[-1], list(known))}"
-    elif first["type"] == "missing":
-        said = "is missing"
-    elif first["type"] == "value_error":
-        said = str(first["msg"]).removeprefix("Value error, ")
-    else:
-        said = f"found {first['input']!r}; {str(first['msg'])[0].lower()}{str(first['msg'])[1:]}"
-    more = f" (and {len(problems) - 1} more problems)" if len(problems) > 1 else ""
-    return f"{place}: {said}{more}"

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from skinbayes.errors import InputError
-from skinbayes.files.toml_text import line_of, read_toml
+from skinbayes.files.toml_text import explain, read_toml
 
 Text = Annotated[str, Field(min_length=1)]
 Doi = Annotated[str, Field(pattern=r"^10\.[0-9]{4,9}/[^\s\"<>]+$")]
@@ -72,13 +72,7 @@ def load_provenance(path: Path) -> Provenance:
     try:
         return Provenance.model_validate(content)
     except ValidationError as error:
-        first, others = error.errors()[0], error.error_count() - 1
-        key = ".".join(str(part) for part in first["loc"])
-        found = "" if first["type"] == "missing" else f"; found {first['input']!r:.60}"
-        more = f" (and {others} more problem{'s' if others > 1 else ''})" if others else ""
-        line = line_of(text, [str(part) for part in first["loc"] if isinstance(part, str)][:1])
-        at = "" if line is None or first["type"] == "missing" else f", line {line}"
-        raise InputError(f"{path}{at}, key '{key}': {first['msg'].lower()}{found}{more}") from None
+        raise InputError(explain(error, path, text, Provenance.model_fields)) from None
 
 
 def check_sha256(provenance: Provenance, data: Path, sha256: str, described_in: Path) -> None:

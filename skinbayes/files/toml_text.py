@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from skinbayes.errors import InputError
+from skinbayes.vocabulary import suggestions
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
 
 LARGEST_FILE = 1_000_000
 """Bytes; a model file or a provenance file is a page or two of text."""
@@ -91,6 +95,32 @@ def line_of(text: str, keys: Sequence[str]) -> int | None:
         else:
             break
     return best
+
+
+def explain(error: ValidationError, path: Path, text: str, known: Collection[str] = ()) -> str:
+    """One sentence for the first thing a file got wrong, with how many more there are.
+
+    Parameters
+    ----------
+    error : what pydantic found
+    path, text : the file and its content
+    known : keys of the top level, for suggestions
+    """
+    problems = error.errors()
+    first = problems[0]
+    keys = [str(part) for part in first["loc"] if not isinstance(part, int)]
+    line = line_of(text, keys) if keys and first["type"] != "missing" else None
+    place = f"{path}{f', line {line}' if line else ''}: {'.'.join(keys)}".rstrip(": ")
+    if first["type"] == "extra_forbidden":
+        said = f"unknown key.{suggestions(keys[-1], list(known) if len(keys) == 1 else [])}"
+    elif first["type"] == "missing":
+        said = "is missing"
+    elif first["type"] == "value_error":
+        said = str(first["msg"]).removeprefix("Value error, ")
+    else:
+        said = f"found {first['input']!r:.60}; {str(first['msg'])[0].lower()}{str(first['msg'])[1:]}"
+    others = len(problems) - 1
+    return f"{place}: {said}" + (f" (and {others} more problem{'s' if others > 1 else ''})" if others else "")
 
 
 def _quoted(key: str) -> str:
