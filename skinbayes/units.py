@@ -45,7 +45,7 @@ _MEANING = {
     "1/s": ("a rate", "500 1/s"),
     "N": ("a force", "0.5 N"),
     "s": ("a time", "30 s"),
-    "m^3": ("a one-dimensional power spectrum", "1e-18 m^3"),
+    "m^3": ("a volume or a one-dimensional power spectrum", "5e-8 m^3"),
     "m^4": ("a two-dimensional power spectrum", "1e-22 m^4"),
 }
 
