@@ -57,9 +57,11 @@ class Curve(NamedTuple):
             value -= target
             low, high = np.where(value > 0, t, low), np.where(value <= 0, t, high)
             step = value / rise
-            following = np.where((t - step > low) & (t - step < high), t - step, (low + high) / 2)
-            active_before, active = active, active & (np.abs(step) > 1e-7)
-            t = np.where(active_before, following, t)
+            # a step that short is right even where rounding puts it just outside the bracket
+            last = np.abs(step) <= 1e-7
+            newton = last | ((t - step > low) & (t - step < high))
+            t = np.where(active, np.where(newton, t - step, (low + high) / 2), t)
+            active = active & ~last
             if not active.any():
                 break
         return (t + 1) / 2 * self.end[:, None], [clenshaw(self.parts[..., i], t)[0] for i in (1, 2, 3)]

@@ -17,6 +17,8 @@ from skinbayes.contact import (
 from skinbayes.errors import InputError
 from skinbayes.roughness import SelfAffineSpectrum, named_surface
 from skinbayes.wetting import capillary_state, capillary_state_at_gap, kelvin_gap
+from skinbayes.wetting._curve import solve_curve
+from skinbayes.wetting._gaps import GapSource
 
 SURFACE = named_surface("paper_reference")
 WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
@@ -316,3 +318,14 @@ def test_shapes_and_impossible_arguments():
         paper(5e-6, closure="square")
     with pytest.raises(InputError, match="branch is 'up'"):
         capillary_state_at_gap(5e-6, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, branch="up")
+
+
+def test_films_at_the_nodes_of_the_interpolation_are_found():
+    # there the root lies on the edge of its bracket, where rounding decides on which side
+    source = GapSource(SURFACE, WET, np.float64(0.42), "gaussian")
+    load, pull = np.array([LOAD]), np.array([TENSION * (np.cos(SKIN_ANGLE) + 1)])
+    separation = mean_separation(load, SURFACE, WET)
+    curve = solve_curve(source, load, pull, separation, np.array([0.1e-6]))
+    z, _ = curve.at(np.exp(curve.nodes[:, 1:-1]))
+    places = np.sin(np.pi / 2 * np.arange(curve.nodes.shape[1]) / (curve.nodes.shape[1] - 1)) ** 2
+    np.testing.assert_allclose(z, curve.end[:, None] * places[1:-1], atol=1e-9)
