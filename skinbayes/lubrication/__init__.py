@@ -11,11 +11,14 @@ from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.flow_factors import (
     FlowFactors,
     FrictionFactors,
-    GapFactors,
     PatirCheng,
-    TabulatedFlowFactors,
     TrivialFlowFactors,
+)
+from skinbayes.lubrication.gap_flow import (
+    GapFactors,
+    TabulatedFlowFactors,
     gap_flow_factors,
+    tabulated_flow_factors,
 )
 from skinbayes.lubrication.rheology import FlowCurve, Rheology, ShearThinning, thinned_viscosity
 from skinbayes.lubrication.stribeck import (
@@ -50,5 +53,6 @@ __all__ = [
     "law_of_table",
     "lubricated_films",
     "stribeck_curve",
+    "tabulated_flow_factors",
     "thinned_viscosity",
 ]

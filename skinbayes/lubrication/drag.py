@@ -19,7 +19,7 @@ class DragIntegrals(NamedTuple):
 
     Attributes
     ----------
-    couette : ∫(φ_f − φ_fs) θ (η/η0)/H dX, dimensionless, shape ``(K,)``
+    couette : ∫(φ_f + φ_fs) θ (η/η0)/H dX, dimensionless, shape ``(K,)``
     pressure_flow : ∫(2 − φ_fp) H dP_f, dimensionless, shape ``(K,)``; ∫H dP_f for smooth surfaces
     """
 
@@ -95,7 +95,7 @@ def drag_integrals(
     carried = flow[np.arange(film.shape[0]), peak]
     behind = np.arange(film.shape[1]) > peak[:, None]
     liquid = np.where(behind, np.minimum(1.0, carried[:, None] / (film + shear / height)), 1.0)
-    stress = between((weights.shear - weights.shear_difference) * thickness * liquid)
+    stress = between(weights.shear * thickness * liquid)
     couette = (stress * spread / mean * grid.spacing).sum(axis=1)
 
     wet = (fluid[:, 1:] > _EMPTY) | (fluid[:, :-1] > _EMPTY)
