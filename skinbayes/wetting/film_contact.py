@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact import (
@@ -19,6 +18,7 @@ from skinbayes.contact import (
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, polynomials
 from skinbayes.wetting._gaps import Closure, batch_shapes
+from skinbayes.wetting._mixture import upper_tail
 from skinbayes.wetting.capillary import capillary_state
 from skinbayes.wetting.humidity import softened_modulus
 
@@ -27,6 +27,7 @@ FILM_FLOOR = 1e-7
 
 _FILMS, _POINTS, _MODULI = 32, 256, 12
 _NO_SPREAD = 1e-12  # m
+_TERMS = 1 << 14  # treated at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,14 +66,23 @@ class FilmContact:
         grades = np.diff(self.area) / np.diff(self.film)
         zero = np.zeros_like(grades[..., :1])
         turns = np.diff(np.concatenate([zero, grades, zero], axis=-1))[..., None, :]
-        step = (self.area[..., 0] - self.dry_area)[..., None]
-        distance = (np.asarray(film)[..., None] - self.film[..., None, :]) / width
-        below = ndtr(distance)
-        bell = np.exp(-0.5 * np.square(distance)) / np.sqrt(2 * np.pi)
-        ramps = np.ascontiguousarray(turns * (width * (distance * below + bell))).sum(axis=-1)
-        slope = np.ascontiguousarray(turns * below).sum(axis=-1)
-        area = self.dry_area[..., None] + step * below[..., 0] + ramps
-        return area, slope + step * bell[..., 0] / width[..., 0]
+        edge = self.film[..., None, :]
+        films = np.asarray(film)[..., None]
+        shape = np.broadcast_shapes(films.shape[:-1], edge.shape[:-1], width.shape[:-1])
+        films = np.broadcast_to(films, (*shape, 1))
+        area, slope = np.empty((2, *shape))
+        step = max(1, _TERMS * shape[-1] // max(1, area.size * edge.shape[-1]))
+        for first in range(0, shape[-1], step):
+            block = slice(first, first + step)
+            distance = (films[..., block, :] - edge) / width
+            bell = np.exp(-0.5 * np.square(distance)) / np.sqrt(2 * np.pi)
+            below = upper_tail(np.abs(distance), bell)
+            below = np.where(distance > 0, 1 - below, below)
+            jump = (self.area[..., 0] - self.dry_area)[..., None]
+            slope[..., block] = (turns * below).sum(axis=-1) + jump * bell[..., 0] / width[..., 0]
+            ramps = (turns * (width * (distance * below + bell))).sum(axis=-1)
+            area[..., block] = self.dry_area[..., None] + jump * below[..., 0] + ramps
+        return area, slope
 
 
 def film_contact(
