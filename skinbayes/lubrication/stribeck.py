@@ -177,7 +177,7 @@ def stribeck_curve(
         stacked = np.array([row[name] for row in rows])
         if name == "strain":
             return stacked.reshape(batch)[()]
-        return stacked.reshape(*batch, products.size).reshape(*batch, *given.shape)[()]
+        return stacked.reshape((*batch, *given.shape))[()]
 
     return StribeckCurve(**{entry.name: gather(entry.name) for entry in fields(StribeckCurve)})
 
@@ -209,6 +209,7 @@ def _one_curve(
     shifted = products * case.shift
     with np.errstate(invalid="ignore"):
         physical = np.isfinite(strain) & (load > 0) & (case.shear_stress >= 0)
+        physical = physical & np.isfinite(table.log_pressure).all() & (np.diff(table.separation) > 0).all()
         possible = (shifted > 0) & (shifted < np.inf) & physical
         beyond = possible & (3 * np.pi * shifted > THICKEST_FILM * load)
     wide = np.full(products.shape, bool(strain > LARGEST_STRAIN))
