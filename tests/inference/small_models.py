@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from numpy.testing import assert_array_equal
+
+from skinbayes.fit import Fit
 from skinbayes.problem import Problem, load_problem
 
 SKIN = """
@@ -75,3 +78,12 @@ def student(folder: Path) -> Problem:
         'family = "student_t"\nnoise_scale = { half_normal = 0.5 }\ndegrees_of_freedom = 3',
         "student.toml",
     )
+
+
+def same_draws(first: Fit, second: Fit) -> None:
+    assert set(first.groups) == set(second.groups)
+    for name, group in first.groups.items():
+        for variable in group.data_vars:
+            assert_array_equal(
+                group[variable].values, second.groups[name][variable].values, err_msg=f"{name}.{variable}"
+            )
