@@ -8,14 +8,12 @@ the roll-off, run over ln q, and use the closed form of the mean square height.
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
-import time
 from collections.abc import Callable
 from math import erf, log, pi, sqrt
 
 import numpy as np
+from common import best_time, report
 from scipy.integrate import quad
 
 from skinbayes.contact import LayeredSkin, relative_contact_area, stress_variance
@@ -98,17 +96,6 @@ def one_by_quad(
     return erf(p["nominal_pressure"] / (e0 / (1 - nu0**2) * sqrt(sum(parts))))
 
 
-def best_time(function: Callable[[], object], repeats: int, calls: int) -> float:
-    """Seconds a call, the best of ``repeats`` rounds."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        for _ in range(calls):
-            function()
-        times.append((time.perf_counter() - start) / calls)
-    return min(times)
-
-
 def run() -> dict[str, float]:
     """Time both sides and compare their results."""
     p = parameter_vectors()
@@ -131,28 +118,15 @@ def run() -> dict[str, float]:
     }
 
 
-def main() -> None:
-    """Print a small table, or JSON."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
-    arguments = parser.parse_args()
-    result = run()
-    if arguments.json:
-        print(json.dumps(result, indent=2))
-        return
-    print(f"A/A0 of {COUNT} parameter vectors at full magnification")
-    rows = (
-        ("plain loop of scipy.integrate.quad, us per vector", "plain_loop_us_per_vector", ".1f"),
-        ("tuned loop of scipy.integrate.quad, us per vector", "tuned_loop_us_per_vector", ".1f"),
-        ("skinbayes, plain Persson, us per vector", "skinbayes_us_per_vector", ".2f"),
-        ("skinbayes, Yang-Persson correction, us per vector", "skinbayes_corrected_us_per_vector", ".2f"),
-        ("times faster than the plain loop", "ratio_to_plain_loop", ".0f"),
-        ("times faster than the tuned loop", "ratio_to_tuned_loop", ".0f"),
-        ("largest relative error of A/A0", "largest_relative_error", ".1e"),
-    )
-    for label, key, style in rows:
-        print(f"  {label:<52}{result[key]:>10{style}}")
-
+LINES = (
+    ("plain loop of scipy.integrate.quad, us per vector", "plain_loop_us_per_vector", ".1f"),
+    ("tuned loop of scipy.integrate.quad, us per vector", "tuned_loop_us_per_vector", ".1f"),
+    ("skinbayes, plain Persson, us per vector", "skinbayes_us_per_vector", ".2f"),
+    ("skinbayes, Yang-Persson correction, us per vector", "skinbayes_corrected_us_per_vector", ".2f"),
+    ("times faster than the plain loop", "ratio_to_plain_loop", ".0f"),
+    ("times faster than the tuned loop", "ratio_to_tuned_loop", ".0f"),
+    ("largest relative error of A/A0", "largest_relative_error", ".1e"),
+)
 
 if __name__ == "__main__":
-    main()
+    report(__doc__, f"A/A0 of {COUNT} parameter vectors at full magnification", run, LINES)

@@ -8,14 +8,13 @@ and J in tables, as one would do next, and a tolerance of 1e-6; 256 values are c
 
 from __future__ import annotations
 
-import argparse
-import json
 import time
 import warnings
 from collections.abc import Callable
 from math import erf, exp, inf, log, pi, sqrt
 
 import numpy as np
+from common import best_time, report
 from scipy.integrate import IntegrationWarning, quad
 from scipy.special import erf as erf_of_array
 from scipy.special import exp1
@@ -143,16 +142,6 @@ def one_vector_tuned(
     return [vector.separation(p, lambda s: float(np.interp(s, t, below)), inner, 1e-6) for p in pressures]
 
 
-def best_time(function: Callable[[], object], repeats: int) -> float:
-    """CPU seconds a call, the best of ``repeats``."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        function()
-        times.append(time.process_time() - start)
-    return min(times)
-
-
 def run() -> dict[str, float]:
     """Time both sides and compare their results."""
     warnings.simplefilter("ignore", IntegrationWarning)  # the outer quad sees the noise of the inner ones
@@ -189,31 +178,18 @@ def run() -> dict[str, float]:
     }
 
 
-def main() -> None:
-    """Print a small table, or JSON."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
-    arguments = parser.parse_args()
-    result = run()
-    if arguments.json:
-        print(json.dumps(result, indent=2))
-        return
-    print(f"mean separation of {COUNT} parameter vectors at {PRESSURES.size} pressures")
-    lines = (
-        ("plain loop of scipy.integrate.quad, us per value", "plain_loop_us_per_value", ".0f"),
-        ("tuned loop of scipy.integrate.quad, us per value", "tuned_loop_us_per_value", ".0f"),
-        ("skinbayes, us per value", "skinbayes_us_per_value", ".2f"),
-        ("skinbayes, all 1024 values, ms", "skinbayes_ms", ".2f"),
-        ("skinbayes, pressures at these separations, ms", "inverse_ms", ".1f"),
-        ("skinbayes, gap distributions, ms", "gap_distribution_ms", ".0f"),
-        ("times faster than the plain loop", "ratio_to_plain_loop", ".0f"),
-        ("times faster than the tuned loop", "ratio_to_tuned_loop", ".0f"),
-        ("largest relative error against the plain loop", "largest_relative_error", ".1e"),
-        ("the same of the tuned loop, against skinbayes", "largest_relative_error_of_tuned_loop", ".1e"),
-    )
-    for label, key, style in lines:
-        print(f"  {label:<52}{result[key]:>10{style}}")
-
+LINES = (
+    ("plain loop of scipy.integrate.quad, us per value", "plain_loop_us_per_value", ".0f"),
+    ("tuned loop of scipy.integrate.quad, us per value", "tuned_loop_us_per_value", ".0f"),
+    ("skinbayes, us per value", "skinbayes_us_per_value", ".2f"),
+    ("skinbayes, all 1024 values, ms", "skinbayes_ms", ".2f"),
+    ("skinbayes, pressures at these separations, ms", "inverse_ms", ".1f"),
+    ("skinbayes, gap distributions, ms", "gap_distribution_ms", ".0f"),
+    ("times faster than the plain loop", "ratio_to_plain_loop", ".0f"),
+    ("times faster than the tuned loop", "ratio_to_tuned_loop", ".0f"),
+    ("largest relative error against the plain loop", "largest_relative_error", ".1e"),
+    ("the same of the tuned loop, against skinbayes", "largest_relative_error_of_tuned_loop", ".1e"),
+)
 
 if __name__ == "__main__":
-    main()
+    report(__doc__, f"mean separation of {COUNT} parameter vectors at {PRESSURES.size} pressures", run, LINES)
