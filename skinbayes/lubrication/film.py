@@ -164,7 +164,7 @@ def grid_for(smallest: float, largest: float, rough: float, tail: float, nodes: 
     the width over which the thinnest film opens, its 2/3rd power.
     """
     reach = 6 * np.sqrt(tail)
-    inlet = float(3 + reach + 20 * np.sqrt(largest))
+    inlet = float(3 + reach + 12 * np.sqrt(largest))
     outlet = float(2 + reach + 2 * np.sqrt(largest))
     thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
     return line_grid(inlet, outlet, nodes, float(np.clip(1.4 * thinnest ** (2 / 3), 2e-3, 0.15)))
