@@ -20,6 +20,7 @@ from skinbayes.wetting._types import BoolArray, IndexArray
 
 _GAPS = {"gaussian": 32, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
 _TERMS = 8192  # of a block that is solved at a time
+_REACH, _MARGIN = 0.75, 0.97
 _REFERENCE = 3.0  # d0 in units of the mean separation at p0
 _SPANS = ((0.55, 9), (0.8, 11), (1.4, 17), (2.2, 25), (4.0, 41), (8.0, 81))
 """Span of ln p and how many pressures interpolate it to 1e-5 or better."""
@@ -45,11 +46,12 @@ class Curve(NamedTuple):
         """z and ``ln p, ln F, ln ū`` at films (m) of shape ``(B, F)``, each of that shape."""
         target = np.log(film)
         count = self.nodes.shape[1]
-        # the film falls as z grows; start on the chord between two nodes
-        cell = np.clip((self.nodes[:, None, :] > target[..., None]).sum(axis=-1), 1, count - 1)
+        # the film falls as z grows, apart from folds at nanometres, where the first crossing is taken; start on the chord
+        cell = np.clip((self.nodes[:, None, :] <= target[..., None]).argmax(axis=-1), 1, count - 1)
         places = 2 * lobatto(count) - 1
         low, high = places[cell - 1], places[cell]
         upper, lower = (np.take_along_axis(self.nodes, c, axis=1) for c in (cell - 1, cell))
+        target = np.where(target > self.nodes.min(axis=1, keepdims=True) - 1e-9, target, np.nan)
         t = low + (high - low) * np.clip((upper - target) / (upper - lower), 0.0, 1.0)
         active = np.ones(target.shape, dtype=bool)
         for _ in range(40):
@@ -70,7 +72,11 @@ class Curve(NamedTuple):
 def solve_curve(
     source: GapSource, pressure: FloatArray, pull: FloatArray, separation: FloatArray, thinnest: FloatArray
 ) -> Curve:
-    """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m."""
+    """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m.
+
+    Where the pull grows so fast that there is no such film, the curve ends at a thicker one.
+    """
+    thinnest = thinnest.copy()
     count, gaps = pressure.size, _GAPS[source.closure]
     curve = Curve(
         _REFERENCE * separation,
@@ -79,13 +85,19 @@ def solve_curve(
         np.full((count, gaps, 4), np.nan),
     )
     # how far up the pressures go, in units of pull/ū(p0), and how small the gaps are
-    reach, margin = np.full(count, 0.75), np.full(count, 0.97)
+    reach, margin = np.full(count, _REACH), np.full(count, _MARGIN)
     todo = np.flatnonzero(np.isfinite(pressure * pull * separation * thinnest) & (separation > 0))
-    for _ in range(20):
+    for _ in range(100):
         span = np.log1p(reach[todo] * pull[todo] / separation[todo] / pressure[todo]) + 1e-3
         need = np.searchsorted([s for s, _ in _SPANS], span)
         again = [np.empty(0, dtype=np.intp)]
-        for group in np.unique(need[need < len(_SPANS)]):
+        for group in np.unique(need):
+            if group == len(_SPANS):  # pressures out of reach: do with a curve that ends earlier
+                rows = todo[need == group]
+                thinnest[rows] *= 4
+                reach[rows], margin[rows] = _REACH, _MARGIN
+                again.append(rows[thinnest[rows] < separation[rows]])
+                continue
             rows = todo[need == group]
             start, length = np.log(pressure[rows]), span[need == group]
             family = gap_family(start, length, source.select(rows), _SPANS[group][1])

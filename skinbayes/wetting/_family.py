@@ -111,7 +111,8 @@ class GapFamily(NamedTuple):
         target = np.log(film)[:, None]
         cell = np.clip((films < target).sum(axis=1)[:, None], 1, _GRID.size - 1)
         (low, high), logs = (np.take_along_axis(films, c, axis=1) for c in (cell - 1, cell)), np.log(_GRID)
-        rise = (target - low) / (high - low)
+        # a film that the gap cannot hold at that pressure gets the widest gap of the grid
+        rise = np.fmin((target - low) / (high - low), 1.0)
         return np.asarray((mean * np.exp(logs[cell - 1] + (logs[cell] - logs[cell - 1]) * rise))[:, 0])
 
     def mean_separation(self, log_pressure: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ from skinbayes.wetting._mixture import Filled, Mixture, fill
 
 _RUNG = 0.12  # of the ladder of ln p on which roots are told apart
 _CLOSE = 1e-12  # relative residual that is left
+_TOLERATED = 1e-9  # relative residual beyond which there is no solution
 _NUDGE = 1e-4  # of ln p, for slopes along it
 
 
@@ -126,7 +127,8 @@ def refine_films(
         total = 1 + strength / gap * here.area
         r_pressure = x - start - np.log(total)
         r_film = np.log(here.film / film)
-        active = active & (np.maximum(np.abs(r_pressure), np.abs(r_film)) > _CLOSE)
+        error = np.maximum(np.abs(r_pressure), np.abs(r_film))
+        active = active & (error > _CLOSE)
         if not active.any():
             break
         beside = filled_at(source, x + _NUDGE, gap)[0]
@@ -142,4 +144,5 @@ def refine_films(
         step_z = np.clip((c * r_pressure - a * r_film) / determinant, -0.3, 0.3)
         x = np.where(active, np.maximum(x + step_x, start), x)
         z = np.where(active, np.maximum(z + step_z, 0.0), z)
-    return x, z
+    # what has not come close is no solution
+    return np.where(error < _TOLERATED, x, np.nan), z

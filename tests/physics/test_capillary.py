@@ -330,3 +330,19 @@ def test_films_at_the_nodes_of_the_interpolation_are_found():
     z, _ = curve.at(np.exp(curve.nodes[:, 1:-1]))
     places = np.sin(np.pi / 2 * np.arange(curve.nodes.shape[1]) / (curve.nodes.shape[1] - 1)) ** 2
     np.testing.assert_allclose(z, curve.end[:, None] * places[1:-1], atol=1e-9)
+
+
+def test_thin_films_and_strong_pulls():
+    # below 0.024 nm there is no solution with an open gap, and films beside it are not touched by that
+    state = paper([5e-12, 1e-6, 6e-6])
+    assert np.isnan(state.total_pressure[0]) or state.total_pressure[0] > 100 * LOAD
+    np.testing.assert_allclose(state.total_pressure[1:], paper([1e-6, 6e-6]).total_pressure, rtol=1e-9)
+    surface = SelfAffineSpectrum(10e-6, 0.8, 640.0, 3600.0, 2e9)
+    soft = LayeredSkin(1.4e6, 68e3, 0.5, 0.5, 20e-6)
+    separation = mean_separation(14e3, surface, soft)
+    strong = capillary_state(
+        separation * np.array([0.01, 0.1, 0.5, 0.9]), 14e3, surface, soft, TENSION, 0.6, 1.5
+    )
+    assert np.all(strong.capillary_pressure > 0)
+    assert np.all(strong.mean_separation < separation)
+    assert np.all(strong.capillary_pressure[:3] > 14e3)
