@@ -10,8 +10,10 @@ from skinbayes.arrays import FloatArray
 from skinbayes.lubrication.grid import LineGrid
 from skinbayes.lubrication.newton import LOAD, FilmState, Law, Solver, Transport
 
-_START = 1.0  # lubrication number at which the contact is solved first: neither stiff nor far from Hertz
-_ROUNDS, _FIRST_ROUNDS = 25, 400
+# lubrication numbers at which the contact is solved first, one after the other until one succeeds: neither stiff nor far from
+# Hertz; the active set may run in a circle from a guess far away
+_STARTS, _THICKER = (1.0, 2.0, 0.5, 5.0, 0.1), (1.0, 2.0, 4.0)
+_ROUNDS, _FIRST_ROUNDS = 25, 100
 _SMALLEST_STEP = 1e-3  # of ln λ
 
 
@@ -23,15 +25,15 @@ def sweep(
     ``transport`` gives the film law at a lubrication number; ``first_film`` is a film thicker than the asperities.
     """
     solver = Solver(grid, law)
-    middle = np.sqrt(np.maximum(1 - np.square(grid.position), 0.0))
-    guess = FilmState(middle * (LOAD / (grid.weight @ middle)), first_film)
-    start, steps = solver(guess, _START, transport(_START), _FIRST_ROUNDS)
     found: list[FilmState | None] = [None] * numbers.size
-    if steps < 0:
-        return found, 0
+    first, steps = _first_film(solver, transport, first_film)
+    if first is None:
+        return found, steps
+    begin, start = first
     order = np.argsort(numbers)
-    for way in (order[numbers[order] < _START][::-1], order[numbers[order] >= _START]):
-        trail = [(0.0, start)]
+    low = np.log(numbers[order]) < begin
+    for way in (order[low][::-1], order[~low]):
+        trail = [(begin, start)]
         for place in way:
             reached, taken = _walk(solver, trail, float(np.log(numbers[place])), transport)
             steps += taken
@@ -39,6 +41,24 @@ def sweep(
                 break
             found[place] = trail[-1][1]
     return found, steps
+
+
+def _first_film(
+    solver: Solver, transport: Callable[[float], Transport], first_film: float
+) -> tuple[tuple[float, FilmState] | None, int]:
+    """A film to start from with its ln λ, from the pressure of Hertz and a thick film; and the steps taken."""
+    grid = solver.grid
+    hertz = np.sqrt(np.maximum(1 - np.square(grid.position), 0.0))
+    hertz *= LOAD / (grid.weight @ hertz)
+    total = 0
+    for number in _STARTS:
+        for factor in _THICKER:
+            guess = FilmState(hertz, factor * first_film)
+            state, steps = solver(guess, number, transport(number), _FIRST_ROUNDS)
+            if steps > 0:
+                return (float(np.log(number)), state), total + steps
+            total += _FIRST_ROUNDS
+    return None, total
 
 
 def _walk(
