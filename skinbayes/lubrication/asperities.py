@@ -81,7 +81,7 @@ class AsperityLaw:
 def asperity_law(
     spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityLaw:
-    """Asperity law of a rough layered surface, from its mean separation (Sects. 5 and 6.2 of the paper).
+    """Asperity law of a rough layered surface, from its mean separation (Sect. 5 and Sect. 6.2 of the paper).
 
     Tabulates `skinbayes.contact.mean_separation` at 160 pressures from 1e-14 to 2 times √V.
 
@@ -101,7 +101,7 @@ def asperity_law(
 
     References
     ----------
-    Persson, Phys. Rev. Lett. 99 (2007) 125502, doi 10.1103/PhysRevLett.99.125502 (Eq. 7).
+    Persson, Phys. Rev. Lett. 99 (2007) 125502, doi 10.1103/PhysRevLett.99.125502.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def asperity_law(
 def asperity_table(
     spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityTable:
-    """Mean separations and asperity pressures of many surfaces at once (Sects. 5 and 6.2 of the paper).
+    """Mean separations and asperity pressures of many surfaces at once (Sect. 5 and Sect. 6.2 of the paper).
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def asperity_table(
 
     References
     ----------
-    Persson, Phys. Rev. Lett. 99 (2007) 125502, doi 10.1103/PhysRevLett.99.125502 (Eq. 7).
+    Persson, Phys. Rev. Lett. 99 (2007) 125502, doi 10.1103/PhysRevLett.99.125502.
 
     Examples
     --------

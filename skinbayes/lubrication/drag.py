@@ -60,7 +60,7 @@ def drag_integrals(
 
     References
     ----------
-    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9 (Sect. 2).
+    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9.
 
     Examples
     --------

@@ -24,7 +24,8 @@ from skinbayes.lubrication.rheology import Rheology
 from skinbayes.lubrication.sweep import sweep
 
 NODES = 80
-"""Nodes across the contact unless told otherwise; friction is then within 0.5 % of that on a grid ten times finer."""
+"""Nodes across the contact unless told otherwise. Friction in the case of Fig. 13 is then within 0.3 % of that on ten times
+as many; over random balls, skins and speeds the largest error of a curve is 0.3 % in the median and 1.4 % at worst."""
 
 _WEAKEST = (
     1e-7  # of the squared roughness: below this λ the fluid carries about that share and all is linear in λ
@@ -104,7 +105,7 @@ def lubricated_films(
 
     References
     ----------
-    Persson & Scaraggi, J. Phys.: Condens. Matter 21 (2009) 185002, doi 10.1088/0953-8984/21/18/185002 (Sect. 2).
+    Persson & Scaraggi, J. Phys.: Condens. Matter 21 (2009) 185002, doi 10.1088/0953-8984/21/18/185002.
     Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9.
 
     Examples

@@ -41,12 +41,12 @@ class GapFactors(NamedTuple):
 
 
 def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
-    """Flow and friction factors of an isotropic surface from the statistics of its gaps, by effective-medium theory.
+    """Flow and friction factors of an isotropic surface from the statistics of its gaps (Appendix C, Fig. 20).
 
-    Regions of gap u conduct like u³ and drag along like u; each is a disk in the medium of all others. With
-    ``s = φ_p ū³``: ``⟨2s/(u³ + s)⟩ = 1`` (Bruggeman's condition in two dimensions, contact included), ``D = ⟨2s u/(u³ + s)⟩``,
-    ``Φ_s = ū − D``, ``φ_fp = D/ū``, ``φ_f + φ_fs = ū [⟨1/u⟩ + 3⟨u(u − D)/(u³ + s)⟩]``. The drag follows from the flow in
-    the frame of the rough surface, where it is steady.
+    Effective-medium theory: regions of gap u conduct like u³ and drag along like u; each is a disk in the medium of all
+    others. With ``s = φ_p ū³``: ``⟨2s/(u³ + s)⟩ = 1`` (Bruggeman's condition in two dimensions, contact included),
+    ``D = ⟨2s u/(u³ + s)⟩``, ``Φ_s = ū − D``, ``φ_fp = D/ū``, ``φ_f + φ_fs = ū [⟨1/u⟩ + 3⟨u(u − D)/(u³ + s)⟩]``. The drag follows
+    from the flow in the frame of the rough surface, where it is steady.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
 
     References
     ----------
-    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9 (Sect. 3).
+    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9.
 
     Examples
     --------
@@ -146,7 +146,7 @@ def tabulated_flow_factors(
     area_correction: float = AREA_CORRECTION,
     smallest_gap: float | None = None,
 ) -> TabulatedFlowFactors:
-    """Flow and friction factors of a rough layered surface at all separations (Appendix C of the paper).
+    """Flow and friction factors of a rough layered surface at all separations (Appendix C of the paper, Fig. 20).
 
     Takes the gaps of `skinbayes.contact.gap_distribution` at 52 pressures through `gap_flow_factors`.
 
@@ -163,7 +163,7 @@ def tabulated_flow_factors(
 
     References
     ----------
-    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9 (Sect. 3).
+    Persson & Scaraggi, Eur. Phys. J. E 34 (2011) 113, doi 10.1140/epje/i2011-11113-9.
 
     Examples
     --------

@@ -48,7 +48,7 @@ def line_grid(inlet: float, outlet: float, count: int, edge_width: float) -> Lin
 
     References
     ----------
-    Johnson, Contact Mechanics (1985), Sect. 2.7, doi 10.1017/CBO9781139171731 (deflection under a line pressure).
+    Johnson, Contact Mechanics (1985), Chap. 2, doi 10.1017/CBO9781139171731 (deflection under a line pressure).
 
     Examples
     --------
@@ -85,7 +85,7 @@ def log_kernel(position: FloatArray) -> FloatArray:
 
     References
     ----------
-    Johnson, Contact Mechanics (1985), Sect. 2.7, doi 10.1017/CBO9781139171731.
+    Johnson, Contact Mechanics (1985), Chap. 2, doi 10.1017/CBO9781139171731.
 
     Examples
     --------

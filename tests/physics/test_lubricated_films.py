@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from skinbayes.contact import LayeredSkin, mean_separation, reduced_modulus
+from skinbayes.contact import LayeredSkin, mean_separation, pressure_at_separation, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
 from skinbayes.lubrication.asperities import asperity_law, law_of_table
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
@@ -85,6 +85,22 @@ def test_slow_sliding_is_the_dry_contact():
         1e3, rel=1e-2
     )
     assert films.fluid_pressure[1].max() / films.fluid_pressure[0].max() == pytest.approx(1e3, rel=1e-2)
+
+
+def test_asperity_law_is_the_inverse_of_the_mean_separation():
+    law = asperity_law(SURFACE, WET)
+    u = np.geomspace(5e-7, 1e-3, 400)
+    exact = pressure_at_separation(u, SURFACE, WET)
+    found, slope = law(u)
+    np.testing.assert_allclose(found, exact, rtol=2e-4)
+    step = 1e-6 * u
+    np.testing.assert_allclose(slope, (law(u + step)[0] - law(u - step)[0]) / (2 * step), rtol=1e-6)
+    np.testing.assert_allclose(law.scaled(1e-5, 1e3)(u / 1e-5)[0], found / 1e3, rtol=1e-10)
+    np.testing.assert_allclose(law.scaled(1e-5, 1e3)(u / 1e-5)[1], slope / 1e3 * 1e-5, rtol=1e-10)
+    assert law.separation_at(5e3) == pytest.approx(mean_separation(5e3, SURFACE, WET), rel=2e-2)
+    # it rises without a limit, and without an overflow, where surfaces would overlap
+    assert np.all(np.diff(law(np.array([-1e-4, -1e-6, 0.0, 1e-8]))[0]) <= 0)
+    assert np.isfinite(law(np.array([-1.0]))[0]).all()
 
 
 def test_fast_sliding_forgets_the_roughness():
