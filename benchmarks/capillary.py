@@ -9,12 +9,8 @@ number of Kelvin lengths and the tolerance are the smallest that keep its error 
 
 from __future__ import annotations
 
-import argparse
-import json
-import time
-from collections.abc import Callable
-
 import numpy as np
+from common import best_time, report
 
 from skinbayes.contact import (
     LayeredSkin,
@@ -77,16 +73,6 @@ class Case:
         return relative_contact_area(found, stress_variance(self.surface, self.skin)[:, None])
 
 
-def best_time(function: Callable[[], object], repeats: int) -> float:
-    """Seconds a call, the best of ``repeats``."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - start)
-    return min(times)
-
-
 def run() -> dict[str, float]:
     """Time both sides and compare their results with the refined solution."""
     case = Case()
@@ -104,23 +90,13 @@ def run() -> dict[str, float]:
     }
 
 
-def main() -> None:
-    """Print a small table, or JSON."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
-    arguments = parser.parse_args()
-    result = run()
-    if arguments.json:
-        print(json.dumps(result, indent=2))
-        return
-    print(f"A/A0 at {FILMS} films for each of {COUNT} parameter vectors")
-    for name, key in (("plain vectorised NumPy", "baseline"), ("skinbayes", "skinbayes")):
-        print(
-            f"  {name:24s}{result[key + '_ms_per_vector']:9.3f} ms per vector, "
-            f"largest error {result[key + '_largest_relative_error']:.1e}"
-        )
-    print(f"  ratio                   {result['ratio']:9.1f}")
-
+LINES = (
+    ("plain vectorised NumPy, ms per vector", "baseline_ms_per_vector", ".2f"),
+    ("skinbayes, ms per vector", "skinbayes_ms_per_vector", ".2f"),
+    ("times faster", "ratio", ".1f"),
+    ("largest relative error of plain NumPy", "baseline_largest_relative_error", ".1e"),
+    ("largest relative error of skinbayes", "skinbayes_largest_relative_error", ".1e"),
+)
 
 if __name__ == "__main__":
-    main()
+    report(__doc__, f"A/A0 at {FILMS} films for each of {COUNT} parameter vectors", run, LINES)
