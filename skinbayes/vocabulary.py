@@ -113,6 +113,18 @@ _ALL = (
     _closed("shear_rate", "γ̇", "1/s", "shear rate"),
     _closed("speed_viscosity_product", "ηv", "N/m", "viscosity times sliding speed"),
     Quantity("velocity_shift_factor", "a", "1", "theory is evaluated at a·ηv"),
+    _closed(
+        "friction_coefficient_boundary", "μ_b", "1", "part of the friction made in the area of real contact"
+    ),
+    _closed(
+        "friction_coefficient_couette", "μ_c", "1", "part of the friction made by shear flow of the lubricant"
+    ),
+    Quantity(
+        "friction_coefficient_pressure_flow", "μ_p", "1", "part of the friction made by pressure flow", -inf
+    ),
+    _closed("asperity_load_share", "φ_a", "1", "share of the load that asperities carry", 1.0),
+    _closed("minimum_film_thickness", "u_min", "m", "smallest mean separation of lubricated surfaces"),
+    _closed("central_film_thickness", "u_c", "m", "mean separation under the middle of the ball"),
     # water
     Quantity("surface_tension", "γ_w", "N/m", "surface tension of the liquid"),
     _closed("contact_angle_skin", "θ1", "rad", "contact angle of the liquid on skin", pi),

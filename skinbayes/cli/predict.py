@@ -41,9 +41,10 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
     bad = [name for name, values in prediction.items() if not (abs(values) < float("inf")).all()]
     if bad:
         row = int((~(abs(prediction[bad[0]]) < float("inf"))).nonzero()[0][0]) + 1
-        raise InputError(
-            f"{model}: {bad[0]} has no finite value at row {row}: these inputs lie outside the forward model's range"
-        )
+        why = " ".join(problem.explain(theta)) or "these inputs lie outside the forward model's range"
+        raise InputError(f"{model}: {bad[0]} has no finite value at row {row}: {why}")
+    for note in problem.explain(theta):
+        click.echo(f"note: {note}", err=True)
     parameters: dict[str, Any] = dict(zip(problem.names, theta.tolist(), strict=True))
     for p in problem.fixed:
         given_as_none = settings.get(p.name, "").lower() == "none"

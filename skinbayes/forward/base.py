@@ -55,6 +55,7 @@ class ForwardModel:
     derived : quantities between inputs and observables (``rms_slope``, ``nominal_pressure``), same calling convention
     profiles : curves for plots
     validate : raises InputError saying in words which inputs cannot be (evaluation itself gives NaN), or None
+    explain : sentences on why predictions are missing (NaN) or doubtful, or None
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
     """
 
@@ -72,6 +73,7 @@ class ForwardModel:
     profiles: tuple[Profile, ...] = field(default=())
     uses_surface: bool = True
     validate: Callable[[Inputs, PowerSpectrum | None], None] | None = None
+    explain: Callable[[Inputs, PowerSpectrum | None], list[str]] | None = None
 
     def required_names(self) -> tuple[str, ...]:
         """All names that occur in ``required``, alternatives included."""

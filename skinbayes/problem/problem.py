@@ -186,6 +186,14 @@ class Problem:
                 quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
         return {name: np.array(np.atleast_2d(value)) for name, value in quantities.items()}
 
+    def explain(self, theta: ArrayLike) -> list[str]:
+        """Sentences on why predictions at ``theta`` are missing or doubtful, empty if nothing is to be said."""
+        batch, _ = self._batch(theta)
+        if self.forward.explain is None:
+            return []
+        with np.errstate(all="ignore"):
+            return self.forward.explain(self.inputs(batch), self.table)
+
     def simulate(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
         """Draw data of the size of the observed ones for each parameter vector, noise included; ``(N,)`` or ``(B, N)``."""
         batch, single = self._batch(theta)
