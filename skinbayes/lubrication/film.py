@@ -111,8 +111,8 @@ def lubricated_films(
     Examples
     --------
     >>> films = lubricated_films([0.1], 4.533e-3, 21.92, 20e3 / 0.75)
-    >>> print(f"{films.central_film[0]:.3e} m, {films.couette[0]:.4f}")
-    1.943e-04 m, 0.1384
+    >>> print(f"{films.central_film[0]:.2e} m, {films.couette[0]:.3f}")
+    1.94e-04 m, 0.138
     """
     product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
     hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus)
