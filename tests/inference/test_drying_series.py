@@ -94,26 +94,6 @@ def test_rate_and_shear_stress_come_back(tmp_path: Path) -> None:
     assert 1e-3 < spread["evaporation_rate"] < 12 / 516
 
 
-@pytest.mark.slow
-def test_modulus_and_film_come_back_from_the_shape_of_the_peak(tmp_path: Path) -> None:
-    problem = model(
-        tmp_path,
-        {
-            "frictional_shear_stress": '{ lognormal = ["12 MPa", 0.5] }',
-            "evaporation_rate": '{ lognormal = ["0.17 um/s", 0.15] }',
-            "young_modulus_layer": '{ lognormal = ["6 MPa", 0.4] }',
-            "yield_stress": '{ lognormal = ["40 MPa", 0.4] }',
-        },
-    )
-    fit = sample(problem, seed=1, ess=1000, cores=2)
-    assert fit.converged
-    covers(fit, problem)
-    prior = np.log(fit.summary()["prior_q95"] / fit.summary()["prior_q05"])
-    posterior = np.log(fit.summary()["q95"] / fit.summary()["q05"])
-    # the peak over the plateau needs no friction amplitude: it tells the modulus
-    assert posterior["young_modulus_layer"] < 0.5 * prior["young_modulus_layer"]
-
-
 LINES = {
     "evaporation_rate": '{ lognormal = ["0.17 um/s", 0.15] }',
     "initial_film": '{ lognormal = ["90 um", 0.2] }',
