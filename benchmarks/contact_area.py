@@ -13,35 +13,11 @@ from collections.abc import Callable
 from math import erf, log, pi, sqrt
 
 import numpy as np
-from common import best_time, report
+from common import COUNT, best_time, parameter_vectors, report
 from scipy.integrate import quad
 
 from skinbayes.contact import LayeredSkin, relative_contact_area, stress_variance
 from skinbayes.roughness import SelfAffineSpectrum
-
-COUNT = 64
-
-
-def parameter_vectors(seed: int = 1) -> dict[str, np.ndarray]:
-    """All parameters vary over the ranges of skin, log-uniform where they are scales; SI units."""
-    rng = np.random.default_rng(seed)
-
-    def scale(low: float, high: float) -> np.ndarray:
-        return np.exp(rng.uniform(log(low), log(high), COUNT))
-
-    return {
-        "rms_height": scale(5e-6, 8e-5),
-        "hurst_exponent": rng.uniform(0.6, 0.95, COUNT),
-        "wavevector_min": scale(5e2, 3e3),
-        "wavevector_rolloff": scale(4e3, 2e4),
-        "wavevector_max": scale(1e8, 1e10),
-        "young_modulus_layer": scale(1e6, 2e9),
-        "young_modulus_bulk": scale(5e3, 1e5),
-        "poisson_ratio_layer": rng.uniform(0.3, 0.5, COUNT),
-        "poisson_ratio_bulk": rng.uniform(0.3, 0.5, COUNT),
-        "layer_thickness": scale(1e-5, 1e-4),
-        "nominal_pressure": scale(1e3, 3e4),
-    }
 
 
 def batch(p: dict[str, np.ndarray], area_correction: float) -> np.ndarray:
