@@ -31,14 +31,14 @@ TUNED = [(vector, pressure) for vector in range(0, 64, 4) for pressure in range(
 def batch(p: dict[str, np.ndarray]) -> tuple[SelfAffineSpectrum, LayeredSkin]:
     """Surface and skin of all vectors."""
     values = list(p.values())
-    return SelfAffineSpectrum(*values[:5]), LayeredSkin(*values[5:])
+    return SelfAffineSpectrum(*values[:5]), LayeredSkin(*values[5:10])
 
 
 class OneVector:
     """The integrands of one parameter vector, in plain Python."""
 
     def __init__(self, p: dict[str, float]) -> None:
-        h, self.hurst, q0, q_r, q1, e0, e1, nu0, nu1, self.d = p.values()
+        h, self.hurst, q0, q_r, q1, e0, e1, nu0, nu1, self.d, _ = p.values()
         self.q_r, self.ends = q_r, (log(q0), log(q_r), log(q1))
         area = (q_r**2 - q0**2) / 2 + q_r**2 * (1 - (q1 / q_r) ** (-2 * self.hurst)) / (2 * self.hurst)
         self.plateau = h**2 / (2 * pi * area)
