@@ -38,11 +38,16 @@ _HOME = {
     "sample": "skinbayes.fit",
 }
 
+_PHYSICS = ("contact", "friction", "lubrication", "roughness", "wetting")
+"""Floors that are useful without inference."""
+
 
 def __getattr__(name: str) -> Any:
     # names are imported when first used, so that `import skinbayes` and `skinbayes --help` stay quick
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
+    if name in _PHYSICS:
+        return import_module(f"{__name__}.{name}")
     raise AttributeError(f"module 'skinbayes' has no attribute '{name}'")
 
 
