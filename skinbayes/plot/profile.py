@@ -93,15 +93,25 @@ def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
 def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tuple[str, list[int]]]:
     """Rows that share a curve at the posterior median, and a word for each group."""
     groups: list[tuple[FloatArray, list[int]]] = []
+    alike: dict[tuple[float, ...], list[int]] = {}
+    differing = [
+        values[0]
+        for name, values in problem.inputs(middle).items()
+        if values.shape[-1] > 1 and name != profile.abscissa
+    ]
     for row in range(problem.conditions.n_rows):
-        grid, curve = problem.profile(profile, middle, row)
+        same = alike.setdefault(tuple(float(values[row]) for values in differing), [])
+        same.append(row)
+    # rows of the same inputs share a curve without it being computed again, and others may still do
+    for alike_rows in alike.values():
+        grid, curve = problem.profile(profile, middle, alike_rows[0])
         both = np.concatenate([grid, curve[0]])
         for known, rows in groups:
             if np.allclose(known, both, rtol=SAME, atol=0.0, equal_nan=True):
-                rows.append(row)
+                rows[:] = sorted([*rows, *alike_rows])
                 break
         else:
-            groups.append((both, [row]))
+            groups.append((both, list(alike_rows)))
     if len(groups) <= MOST_CURVES:
         return [("", rows) for _, rows in groups]
     groups.sort(key=lambda group: group[0][-1])
