@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.units import product_unit
-from skinbayes.vocabulary import QUANTITIES
+from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX
 
 if TYPE_CHECKING:
     import xarray
@@ -66,7 +66,7 @@ def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
         name: (("row",), values.astype(object)) for name, values in problem.conditions.labels.items()
     }
     if problem.observed_spread is not None and problem.observed_spread.any():
-        constant[problem.observable + "_standard_deviation"] = (("row",), problem.observed_spread)
+        constant[problem.observable + STANDARD_DEVIATION_SUFFIX] = (("row",), problem.observed_spread)
     groups = {
         "observed_data": xarray.Dataset(observed, coords=coordinates),
         "constant_data": xarray.Dataset(constant, coords=coordinates),

@@ -15,11 +15,12 @@ from skinbayes.forward.contact_inputs import (
     SKIN_DEFAULTS,
     SKIN_INPUTS,
     nominal_pressure_of,
+    pressure_and_slope,
     skin_of,
     spectrum_of,
     validate_contact,
 )
-from skinbayes.roughness import PowerSpectrum, rms_slope
+from skinbayes.roughness import PowerSpectrum
 from skinbayes.wetting import capillary_state
 
 Closure = Literal["gaussian", "delta"]
@@ -61,13 +62,6 @@ def _evaluate(inputs: Inputs, table: PowerSpectrum | None, closure: Closure) -> 
     return along_rows(known, "film_thickness", partial(_bridged, table=table, closure=closure))
 
 
-def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    return {
-        "nominal_pressure": nominal_pressure_of(inputs),
-        "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, table))),
-    }
-
-
 def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
     return ForwardModel(
@@ -78,7 +72,7 @@ def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardMo
         optional=BRIDGED_SKIN_DEFAULTS,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
-        derived=_derived,
+        derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),
     )

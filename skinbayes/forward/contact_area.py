@@ -12,12 +12,12 @@ from skinbayes.forward.contact_inputs import (
     SKIN_DEFAULTS,
     SKIN_INPUTS,
     contact_area_of,
-    nominal_pressure_of,
+    pressure_and_slope,
     skin_of,
     spectrum_of,
     validate_contact,
 )
-from skinbayes.roughness import PowerSpectrum, rms_slope
+from skinbayes.roughness import PowerSpectrum
 
 _ENTERS_VARIANCE = (*SKIN_INPUTS, "poisson_ratio_layer", "poisson_ratio_bulk", "rms_height", "hurst_exponent",
                     "wavevector_min", "wavevector_rolloff", "wavevector_max")  # fmt: skip
@@ -54,13 +54,6 @@ def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArr
         "plastic_share": area.plastic_share,
         "surface_response": surface_response(skin, wavevector[..., np.newaxis])[..., 0],
         "effective_modulus": effective_modulus(skin, wavevector[..., np.newaxis])[..., 0],
-    }
-
-
-def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    return {
-        "nominal_pressure": nominal_pressure_of(inputs),
-        "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, table))),
     }
 
 
@@ -102,7 +95,7 @@ MODEL = ForwardModel(
     exclusive=((("wavevector",), ("magnification",)),),
     evaluate=_evaluate,
     validate=validate_contact,
-    derived=_derived,
+    derived=pressure_and_slope,
     derived_names=("nominal_pressure", "rms_slope"),
     blocks=("rms_slope",),
     profiles=(CONTACT_AREA_PROFILE,),

@@ -21,6 +21,7 @@ from skinbayes.roughness import (
     SelfAffineSpectrum,
     TabulatedSpectrum,
     rms_height,
+    rms_slope,
     validate_spectrum,
 )
 
@@ -79,6 +80,14 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
     return np.asarray(
         sphere_contact(inputs["normal_force"], inputs["sphere_radius"], modulus).mean_pressure, dtype=float
     )
+
+
+def pressure_and_slope(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+    """Return what stands between the inputs and any contact: ``nominal_pressure`` [Pa] and ``rms_slope``."""
+    return {
+        "nominal_pressure": nominal_pressure_of(inputs),
+        "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, table))),
+    }
 
 
 def validate_contact(inputs: Inputs, table: PowerSpectrum | None) -> None:

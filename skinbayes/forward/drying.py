@@ -15,11 +15,12 @@ from skinbayes.forward.contact_inputs import (
     SKIN_DEFAULTS,
     SKIN_INPUTS,
     nominal_pressure_of,
+    pressure_and_slope,
     skin_of,
     spectrum_of,
     validate_contact,
 )
-from skinbayes.roughness import PowerSpectrum, rms_slope
+from skinbayes.roughness import PowerSpectrum
 from skinbayes.wetting import FILM_FLOOR, drying_curve, evaporation_rate, film_contact, film_of_droplet
 
 FILM_ALTERNATIVES = (("initial_film",), ("droplet_volume", "stroke_length", "contact_width"))
@@ -85,13 +86,6 @@ def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArr
     return along_rows(known, "time", partial(_dried, table=table))
 
 
-def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    return {
-        "nominal_pressure": nominal_pressure_of(inputs),
-        "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, table))),
-    }
-
-
 def _grid(inputs: Inputs, table: PowerSpectrum | None) -> FloatArray:
     """From a little before wetting until a little after the film is gone."""
     start = float(np.median(inputs["wetting_time"]))
@@ -145,7 +139,7 @@ MODEL = ForwardModel(
     accepted=("hardening_film",),
     evaluate=_evaluate,
     validate=validate_contact,
-    derived=_derived,
+    derived=pressure_and_slope,
     derived_names=("nominal_pressure", "rms_slope"),
     blocks=("rms_slope",),
     profiles=TIMELINE,

@@ -9,6 +9,21 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+
+HEAVY = (
+    "arviz",
+    "corner",
+    "emcee",
+    "h5py",
+    "jinja2",
+    "matplotlib",
+    "pandas",
+    "pint",
+    "rich",
+    "scipy.stats",
+    "xarray",
+)
+"""Imported inside the functions that use them."""
 PACKAGE = ROOT / "skinbayes"
 
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef

@@ -6,7 +6,7 @@ import ast
 import sys
 
 import pytest
-from source_tree import ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
+from source_tree import HEAVY, ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
 
 WORDS = {"errors", "arrays", "constants", "vocabulary"}
 PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
@@ -64,21 +64,6 @@ HOMES: dict[str, set[str]] = {
     "xarray": {"fit", "plot", "report"},
 }
 """Library to the floors that may import it; a library that is not here is not a dependency."""
-
-HEAVY = (
-    "arviz",
-    "corner",
-    "emcee",
-    "h5py",
-    "jinja2",
-    "matplotlib",
-    "pandas",
-    "pint",
-    "rich",
-    "scipy.stats",
-    "xarray",
-)
-"""Imported inside the functions that use them."""
 
 
 def reaches_up_lazily(found: Import) -> bool:

@@ -7,21 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from source_tree import ROOT
-
-HEAVY = [
-    "arviz",
-    "corner",
-    "emcee",
-    "h5py",
-    "jinja2",
-    "matplotlib",
-    "pandas",
-    "pint",
-    "rich",
-    "scipy.stats",
-    "xarray",
-]
+from source_tree import HEAVY, ROOT
 
 SHOW = "import json, sys; print(json.dumps(sorted(sys.modules)))"
 
