@@ -9,9 +9,17 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from skinbayes.errors import InputError
-from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile
+from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 
-__all__ = ["ROUGHNESS_INPUTS", "ForwardModel", "Inputs", "Profile", "forward_model", "forward_models"]
+__all__ = [
+    "ROUGHNESS_INPUTS",
+    "ForwardModel",
+    "Inputs",
+    "Profile",
+    "Tables",
+    "forward_model",
+    "forward_models",
+]
 
 
 def forward_models() -> dict[str, ForwardModel]:

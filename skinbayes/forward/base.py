@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
 from skinbayes.arrays import FloatArray
+from skinbayes.lubrication import FlowCurve
 from skinbayes.roughness import PowerSpectrum
 
 ROUGHNESS_INPUTS = ("rms_height", "hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
@@ -13,6 +17,32 @@ ROUGHNESS_INPUTS = ("rms_height", "hurst_exponent", "wavevector_min", "wavevecto
 
 Inputs = Mapping[str, FloatArray]
 """Name to SI values; each array broadcasts to ``(B, N)``: B parameter vectors, N rows of conditions."""
+
+Ranges = Mapping[str, tuple[float, float]]
+"""Name of an input to its smallest and largest value over the rows and nearly all of the prior, SI."""
+
+Progress = Callable[[int, int], None]
+"""Called with the number of steps done and their total."""
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Measured curves that enter beside the numbers.
+
+    Attributes
+    ----------
+    spectrum : tabulated roughness spectrum, or None
+    flow_curves : viscosity against shear rate of the liquid of each row, or None; rows of one liquid share an object
+    """
+
+    spectrum: PowerSpectrum | None = None
+    flow_curves: tuple[FlowCurve, ...] | None = None
+
+    def at_row(self, row: int) -> Tables:
+        """The curves of one row."""
+        if self.flow_curves is None:
+            return self
+        return Tables(self.spectrum, (self.flow_curves[row],))
 
 
 @dataclass(frozen=True)
@@ -31,8 +61,8 @@ class Profile:
     title: str
     abscissa: str
     ordinate: str
-    grid: Callable[[Inputs, PowerSpectrum | None], FloatArray]
-    evaluate: Callable[[Inputs, PowerSpectrum | None, FloatArray], FloatArray]
+    grid: Callable[[Inputs, Tables], FloatArray]
+    evaluate: Callable[[Inputs, Tables, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -51,11 +81,16 @@ class ForwardModel:
     derived_names : names of the ``derived`` quantities
     blocks : those of them that may stand for the parameters behind them when combinations are named (``rms_slope``)
     accepted : further inputs that may be given and have no default
-    evaluate : ``(inputs, table) -> {observable: (B, N)}``; ``table`` is a tabulated spectrum or None
+    evaluate : ``(inputs, tables) -> {observable: (B, N)}``
     derived : quantities between inputs and observables (``rms_slope``, ``nominal_pressure``), same calling convention
     profiles : curves for plots
     validate : raises InputError saying in words which inputs cannot be (evaluation itself gives NaN), or None
     explain : sentences on why predictions are missing (NaN) or doubtful, or None
+    flags : ``(inputs, tables) -> {flag: (B, N)}``, true where a prediction is at the edge of what the theory can say, or None
+    flag_meanings : what each flag says, a clause
+    prepare : ``(ranges, tables, progress) ->`` the same model with a faster evaluation for inputs within ranges, or None
+    accuracy : a sentence on the error of the evaluation, empty if it is that of the physics below
+    uses_flow_curves : True if flow curves of liquids may stand for ``viscosity``
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
     """
 
@@ -64,16 +99,21 @@ class ForwardModel:
     observables: tuple[str, ...]
     required: tuple[str | tuple[tuple[str, ...], ...], ...]
     optional: Mapping[str, float]
-    evaluate: Callable[[Inputs, PowerSpectrum | None], dict[str, FloatArray]]
-    derived: Callable[[Inputs, PowerSpectrum | None], dict[str, FloatArray]]
+    evaluate: Callable[[Inputs, Tables], dict[str, FloatArray]]
+    derived: Callable[[Inputs, Tables], dict[str, FloatArray]]
     exclusive: tuple[tuple[tuple[str, ...], ...], ...] = ()
     derived_names: tuple[str, ...] = ()
     blocks: tuple[str, ...] = ()
     accepted: tuple[str, ...] = ()
     profiles: tuple[Profile, ...] = field(default=())
     uses_surface: bool = True
-    validate: Callable[[Inputs, PowerSpectrum | None], None] | None = None
-    explain: Callable[[Inputs, PowerSpectrum | None], list[str]] | None = None
+    validate: Callable[[Inputs, Tables], None] | None = None
+    explain: Callable[[Inputs, Tables], list[str]] | None = None
+    flags: Callable[[Inputs, Tables], dict[str, NDArray[np.bool_]]] | None = None
+    flag_meanings: Mapping[str, str] = field(default_factory=dict)
+    prepare: Callable[[Ranges, Tables, Progress | None], ForwardModel] | None = None
+    accuracy: str = ""
+    uses_flow_curves: bool = False
 
     def required_names(self) -> tuple[str, ...]:
         """All names that occur in ``required``, alternatives included."""

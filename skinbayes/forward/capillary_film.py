@@ -9,7 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
-from skinbayes.forward.base import ForwardModel, Inputs
+from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
@@ -20,7 +20,6 @@ from skinbayes.forward.contact_inputs import (
     spectrum_of,
     validate_contact,
 )
-from skinbayes.roughness import PowerSpectrum
 from skinbayes.wetting import capillary_state
 
 Closure = Literal["gaussian", "delta"]
@@ -39,13 +38,11 @@ OBSERVABLES = (
 )
 
 
-def _bridged(
-    inputs: Inputs, film: FloatArray, table: PowerSpectrum | None, closure: Closure
-) -> dict[str, FloatArray]:
+def _bridged(inputs: Inputs, film: FloatArray, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
     state = capillary_state(
         film,
         nominal_pressure_of(inputs),
-        spectrum_of(inputs, table),
+        spectrum_of(inputs, tables),
         skin_of(inputs),
         inputs["surface_tension"],
         inputs["contact_angle_skin"],
@@ -56,10 +53,10 @@ def _bridged(
     return {name: np.asarray(getattr(state, name)) for name in OBSERVABLES}
 
 
-def _evaluate(inputs: Inputs, table: PowerSpectrum | None, closure: Closure) -> dict[str, FloatArray]:
+def _evaluate(inputs: Inputs, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
     # noise that differs by row must not part rows that share a curve
     known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
-    return along_rows(known, "film_thickness", partial(_bridged, table=table, closure=closure))
+    return along_rows(known, "film_thickness", partial(_bridged, tables=tables, closure=closure))
 
 
 def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardModel:

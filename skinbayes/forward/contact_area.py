@@ -6,7 +6,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import effective_modulus, stress_variance, surface_response
-from skinbayes.forward.base import ForwardModel, Inputs, Profile
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
@@ -32,21 +32,21 @@ def wavevector_of(inputs: Inputs, spectrum: PowerSpectrum) -> FloatArray:
     return np.asarray(spectrum.wavevector_max, dtype=float)
 
 
-def _variance(inputs: Inputs, table: PowerSpectrum | None, wavevector: FloatArray) -> FloatArray:
+def _variance(inputs: Inputs, tables: Tables, wavevector: FloatArray) -> FloatArray:
     """Stress variance at one wavevector a row, shape ``(B, N)``."""
     if all(np.shape(inputs[name])[-1:] in ((), (1,)) for name in _ENTERS_VARIANCE if name in inputs):
         # nothing but the wavevector differs from row to row: one cumulative integral serves all rows
         batch = {
             name: np.atleast_2d(value)[:, 0] for name, value in inputs.items() if name in _ENTERS_VARIANCE
         }
-        return stress_variance(spectrum_of(batch, table), skin_of({**inputs, **batch}), wavevector)
-    return stress_variance(spectrum_of(inputs, table), skin_of(inputs), wavevector[..., np.newaxis])[..., 0]
+        return stress_variance(spectrum_of(batch, tables), skin_of({**inputs, **batch}), wavevector)
+    return stress_variance(spectrum_of(inputs, tables), skin_of(inputs), wavevector[..., np.newaxis])[..., 0]
 
 
-def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    spectrum, skin = spectrum_of(inputs, table), skin_of(inputs)
+def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
     wavevector = wavevector_of(inputs, spectrum)
-    area = contact_area_of(inputs, table, _variance(inputs, table, wavevector))
+    area = contact_area_of(inputs, tables, _variance(inputs, tables, wavevector))
     return {
         "relative_contact_area": area.total,
         "relative_contact_area_elastic": area.elastic,
@@ -57,15 +57,15 @@ def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArr
     }
 
 
-def _grid(inputs: Inputs, table: PowerSpectrum | None) -> FloatArray:
-    spectrum = spectrum_of(inputs, table)
+def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
+    spectrum = spectrum_of(inputs, tables)
     return np.geomspace(np.min(spectrum.wavevector_min), np.max(spectrum.wavevector_max), 121)
 
 
-def _profile(inputs: Inputs, table: PowerSpectrum | None, wavevector: FloatArray) -> FloatArray:
-    spectrum = spectrum_of(inputs, table)
+def _profile(inputs: Inputs, tables: Tables, wavevector: FloatArray) -> FloatArray:
+    spectrum = spectrum_of(inputs, tables)
     column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
-    return contact_area_of(column, table, stress_variance(spectrum, skin_of(inputs), wavevector)).total
+    return contact_area_of(column, tables, stress_variance(spectrum, skin_of(inputs), wavevector)).total
 
 
 CONTACT_AREA_PROFILE = Profile(

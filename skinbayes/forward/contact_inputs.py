@@ -15,7 +15,7 @@ from skinbayes.contact import (
     stress_variance,
     validate_skin,
 )
-from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs
+from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs, Tables
 from skinbayes.roughness import (
     PowerSpectrum,
     SelfAffineSpectrum,
@@ -43,11 +43,12 @@ PRESSURE_ALTERNATIVES = (
 """How the nominal pressure can be given; the first complete alternative is used."""
 
 
-def spectrum_of(inputs: Inputs, table: PowerSpectrum | None) -> PowerSpectrum:
+def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     """Return the roughness spectrum: self-affine from the five roughness inputs, or the table.
 
     A table is scaled to ``rms_height`` if that input is given.
     """
+    table = tables.spectrum
     if table is None:
         return SelfAffineSpectrum(*(inputs[name] for name in ROUGHNESS_INPUTS))
     if "rms_height" in inputs and isinstance(table, TabulatedSpectrum):
@@ -82,28 +83,26 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
     )
 
 
-def pressure_and_slope(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     """Return what stands between the inputs and any contact: ``nominal_pressure`` [Pa] and ``rms_slope``."""
     return {
         "nominal_pressure": nominal_pressure_of(inputs),
-        "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, table))),
+        "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, tables))),
     }
 
 
-def validate_contact(inputs: Inputs, table: PowerSpectrum | None) -> None:
+def validate_contact(inputs: Inputs, tables: Tables) -> None:
     """Raise InputError naming the input of spectrum or skin that cannot be, such as a roll-off below the band."""
-    spectrum = spectrum_of(inputs, table)
+    spectrum = spectrum_of(inputs, tables)
     if isinstance(spectrum, SelfAffineSpectrum):
         validate_spectrum(spectrum)
     validate_skin(skin_of(inputs))
 
 
-def contact_area_of(
-    inputs: Inputs, table: PowerSpectrum | None, variance: FloatArray | None = None
-) -> ContactArea:
+def contact_area_of(inputs: Inputs, tables: Tables, variance: FloatArray | None = None) -> ContactArea:
     """Return the relative contact area (elastic, plastic) at full magnification, or for a given stress variance."""
     if variance is None:
-        variance = stress_variance(spectrum_of(inputs, table), skin_of(inputs))
+        variance = stress_variance(spectrum_of(inputs, tables), skin_of(inputs))
     return elastoplastic_contact_area(
         nominal_pressure_of(inputs), variance, inputs["yield_stress"], inputs["area_correction"]
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
-from skinbayes.forward.base import ForwardModel, Inputs, Profile
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
@@ -20,7 +20,6 @@ from skinbayes.forward.contact_inputs import (
     spectrum_of,
     validate_contact,
 )
-from skinbayes.roughness import PowerSpectrum
 from skinbayes.wetting import FILM_FLOOR, drying_curve, evaporation_rate, film_contact, film_of_droplet
 
 FILM_ALTERNATIVES = (("initial_film",), ("droplet_volume", "stroke_length", "contact_width"))
@@ -51,11 +50,11 @@ def evaporation_rate_of(inputs: Inputs) -> FloatArray:
     return np.asarray(evaporation_rate(surface, air, humidity, inputs["air_speed"]), dtype=float)
 
 
-def _dried(inputs: Inputs, time: FloatArray, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+def _dried(inputs: Inputs, time: FloatArray, tables: Tables) -> dict[str, FloatArray]:
     pressure = nominal_pressure_of(inputs)
     contact = film_contact(
         pressure,
-        spectrum_of(inputs, table),
+        spectrum_of(inputs, tables),
         skin_of(inputs),
         inputs["surface_tension"],
         inputs["contact_angle_skin"],
@@ -80,21 +79,21 @@ def _dried(inputs: Inputs, time: FloatArray, table: PowerSpectrum | None) -> dic
     return {name: np.asarray(getattr(curve, name)) for name in OBSERVABLES}
 
 
-def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     # noise that differs by row must not part rows that share a curve
     known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
-    return along_rows(known, "time", partial(_dried, table=table))
+    return along_rows(known, "time", partial(_dried, tables=tables))
 
 
-def _grid(inputs: Inputs, table: PowerSpectrum | None) -> FloatArray:
+def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
     """From a little before wetting until a little after the film is gone."""
     start = float(np.median(inputs["wetting_time"]))
     lasts = float(np.median(initial_film_of(inputs) / evaporation_rate_of(inputs)))
     return np.linspace(max(0.0, start - 0.1 * lasts), start + 1.1 * lasts, 301)
 
 
-def _profile(inputs: Inputs, table: PowerSpectrum | None, time: FloatArray, observable: str) -> FloatArray:
-    return _dried(inputs, time, table)[observable]
+def _profile(inputs: Inputs, tables: Tables, time: FloatArray, observable: str) -> FloatArray:
+    return _dried(inputs, time, tables)[observable]
 
 
 TIMELINE = tuple(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ForwardModel, Inputs
+from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_area import CONTACT_AREA_PROFILE
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
@@ -15,21 +15,21 @@ from skinbayes.forward.contact_inputs import (
     validate_contact,
 )
 from skinbayes.friction import friction_coefficient
-from skinbayes.roughness import PowerSpectrum, rms_slope
+from skinbayes.roughness import rms_slope
 
 
-def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
+def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     pressure = nominal_pressure_of(inputs)
-    area = contact_area_of({**inputs, "nominal_pressure": pressure}, table).total
+    area = contact_area_of({**inputs, "nominal_pressure": pressure}, tables).total
     shear_stress = inputs["frictional_shear_stress"]
     return {"friction_coefficient": friction_coefficient(shear_stress, area, pressure)}
 
 
-def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    area = contact_area_of(inputs, table)
+def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    area = contact_area_of(inputs, tables)
     return {
         "nominal_pressure": nominal_pressure_of(inputs),
-        "rms_slope": rms_slope(spectrum_of(inputs, table)),
+        "rms_slope": rms_slope(spectrum_of(inputs, tables)),
         "relative_contact_area": area.total,
         "plastic_share": area.plastic_share,
     }

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
-from skinbayes.forward.base import ForwardModel, Inputs, Profile
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     SKIN_DEFAULTS,
     SKIN_INPUTS,
@@ -17,7 +17,7 @@ from skinbayes.forward.contact_inputs import (
     validate_contact,
 )
 from skinbayes.lubrication import StribeckCurve, stribeck_curve
-from skinbayes.roughness import PowerSpectrum, rms_slope
+from skinbayes.roughness import rms_slope
 
 SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
 """How the abscissa can be given; the first complete alternative is used."""
@@ -41,21 +41,21 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
     return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
 
 
-def _curve(inputs: Inputs, products: FloatArray, table: PowerSpectrum | None) -> StribeckCurve:
+def _curve(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCurve:
     return stribeck_curve(
         products[0],
         inputs["sphere_radius"],
         inputs["normal_force"],
         skin_of(inputs),
-        spectrum_of(inputs, table),
+        spectrum_of(inputs, tables),
         inputs["frictional_shear_stress"],
         inputs["area_correction"],
         inputs["velocity_shift_factor"],
     )
 
 
-def _observables(inputs: Inputs, products: FloatArray, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    curve = _curve(inputs, products, table)
+def _observables(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:
+    curve = _curve(inputs, products, tables)
     return {name: np.asarray(getattr(curve, field)) for name, field in FIELDS.items()}
 
 
@@ -68,16 +68,16 @@ def _along(inputs: Inputs) -> dict[str, FloatArray]:
     }
 
 
-def _evaluate(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    return along_rows(_along(inputs), "speed_viscosity_product", partial(_observables, table=table))
+def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    return along_rows(_along(inputs), "speed_viscosity_product", partial(_observables, tables=tables))
 
 
-def _explain(inputs: Inputs, table: PowerSpectrum | None) -> list[str]:
+def _explain(inputs: Inputs, tables: Tables) -> list[str]:
     """Why points of the curve are missing or doubtful."""
     said: list[str] = []
 
     def collect(common: Inputs, products: FloatArray) -> dict[str, FloatArray]:
-        curve = _curve(common, products, table)
+        curve = _curve(common, products, tables)
         said.extend(reason for reason in curve.reasons() if reason not in said)
         return {"friction_coefficient": np.asarray(curve.friction_coefficient)}
 
@@ -85,16 +85,16 @@ def _explain(inputs: Inputs, table: PowerSpectrum | None) -> list[str]:
     return said
 
 
-def _derived(inputs: Inputs, table: PowerSpectrum | None) -> dict[str, FloatArray]:
-    return {"rms_slope": np.asarray(rms_slope(spectrum_of(inputs, table)))}
+def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    return {"rms_slope": np.asarray(rms_slope(spectrum_of(inputs, tables)))}
 
 
-def _grid(inputs: Inputs, table: PowerSpectrum | None) -> FloatArray:
+def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
     return np.geomspace(1e-6, 1.0, 61)
 
 
-def _profile(inputs: Inputs, table: PowerSpectrum | None, products: FloatArray) -> FloatArray:
-    return np.asarray(_curve(inputs, products[np.newaxis], table).friction_coefficient)
+def _profile(inputs: Inputs, tables: Tables, products: FloatArray) -> FloatArray:
+    return np.asarray(_curve(inputs, products[np.newaxis], tables).friction_coefficient)
 
 
 MODEL = ForwardModel(

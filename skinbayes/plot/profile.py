@@ -169,8 +169,8 @@ def _smallest_wavevector(problem: Problem, profile: Profile) -> float | None:
     """q0 if the abscissa is a wavevector and all rows and draws share its smallest value."""
     if profile.abscissa != "wavevector":
         return None
-    if problem.table is not None:
-        value = np.atleast_1d(problem.table.wavevector_min)
+    if problem.tables.spectrum is not None:
+        value = np.atleast_1d(problem.tables.spectrum.wavevector_min)
     elif any(parameter.name == "wavevector_min" for parameter in problem.free):
         return None
     else:

@@ -162,7 +162,7 @@ def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
 
     def derived(theta: FloatArray) -> dict[str, FloatArray]:
         # the quantity of each parameter vector; a block that the parameters leave alone comes once for all
-        found = problem.forward.derived(problem.inputs(full(theta)), problem.table)
+        found = problem.forward.derived(problem.inputs(full(theta)), problem.tables)
         shape = (len(theta), problem.conditions.n_rows)
         return {name: np.array(np.broadcast_to(found[name], shape)) for name in problem.forward.blocks}
 

@@ -12,7 +12,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
+from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, Tables, forward_model
 from skinbayes.problem.consistency import check_derived, check_names, check_required
 from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, plan_inputs
@@ -97,6 +97,7 @@ def load_problem(
         plan = plan_inputs(fixed, free, bound)
     except InputError as error:
         raise InputError(f"{spec.path}: {error}") from None
+    tables = Tables(table)
     data_digest = digest_data(spec, dataset, observed, spread)
     problem = Problem(
         spec=spec,
@@ -107,7 +108,7 @@ def load_problem(
         dataset=dataset,
         observed=observed,
         observed_spread=spread,
-        table=table,
+        tables=tables,
         fingerprint=digest_model(spec, free, fixed, table, data_digest),
         data_fingerprint=data_digest,
         _plan=plan,
@@ -116,7 +117,7 @@ def load_problem(
     )
     if forward.validate is not None:
         try:
-            forward.validate(problem.inputs(problem.prior_medians()[np.newaxis]), table)
+            forward.validate(problem.inputs(problem.prior_medians()[np.newaxis]), tables)
         except InputError as error:
             raise InputError(f"{spec.path}: {'at the prior medians ' if free else ''}{error}") from None
     return problem

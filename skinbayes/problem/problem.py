@@ -14,9 +14,8 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import ForwardModel, Profile
+from skinbayes.forward import ForwardModel, Profile, Tables
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
-from skinbayes.roughness import PowerSpectrum
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.noise import NoiseFamily, noise_family
 
@@ -49,7 +48,7 @@ class Problem:
     dataset : the data set after row selection, or None
     observed : observed values, shape ``(N,)``, SI; None without data
     observed_spread : known standard deviation of each datum, shape ``(N,)``, zero if not used
-    table : tabulated roughness spectrum, or None
+    tables : tabulated roughness spectrum and flow curves of the rows, where there are any
     fingerprint : digest of everything the posterior depends on
     data_fingerprint : digest of the data alone
     settings : values set over the model file, as given
@@ -64,7 +63,7 @@ class Problem:
     dataset: Dataset | None
     observed: FloatArray | None
     observed_spread: FloatArray | None
-    table: PowerSpectrum | None
+    tables: Tables
     fingerprint: str
     data_fingerprint: str
     _plan: tuple[InputPlan, ...]
@@ -174,7 +173,7 @@ class Problem:
         batch, _ = self._batch(theta)
         inputs = self.inputs(batch)
         with np.errstate(all="ignore"):
-            quantities = dict(self.forward.derived(inputs, self.table))
+            quantities = dict(self.forward.derived(inputs, self.tables))
             known = inputs | quantities
             for name, block in self.spec.derived.items():
                 product = np.ones((1, 1))
@@ -192,7 +191,7 @@ class Problem:
         if self.forward.explain is None:
             return []
         with np.errstate(all="ignore"):
-            return self.forward.explain(self.inputs(batch), self.table)
+            return self.forward.explain(self.inputs(batch), self.tables)
 
     def simulate(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
         """Draw data of the size of the observed ones for each parameter vector, noise included; ``(N,)`` or ``(B, N)``."""
@@ -210,8 +209,8 @@ class Problem:
             for name, value in self.inputs(theta).items()
         }
         with np.errstate(all="ignore"):
-            grid = profile.grid(inputs, self.table)
-            curve = profile.evaluate(inputs, self.table, grid)
+            grid = profile.grid(inputs, self.tables)
+            curve = profile.evaluate(inputs, self.tables, grid)
         return grid, np.array(np.broadcast_to(curve, (len(theta), len(grid))))
 
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
@@ -290,7 +289,7 @@ class Problem:
     def _evaluate(self, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
         """The forward model with the discrepancy factor, if there is one; shapes as the forward model gives them."""
         with np.errstate(all="ignore"):
-            predicted = self.forward.evaluate(inputs, self.table)
+            predicted = self.forward.evaluate(inputs, self.tables)
         if "discrepancy_factor" in inputs:
             predicted[self.observable] = predicted[self.observable] * inputs["discrepancy_factor"]
         return predicted
