@@ -1,14 +1,18 @@
-"""Statistics that know nothing of skin: priors, transforms, densities and likelihoods, noise families."""
+"""Statistics that know nothing of skin: priors, transforms, densities and likelihoods, noise families, group effects."""
 
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.families import FAMILIES, Family
+from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise import NOISE_FAMILIES, NoiseFamily, noise_family
 from skinbayes.statistics.priors import Prior, make_prior
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
+from skinbayes.statistics.two_way import AnalysisOfVariance, crossed_analysis_of_variance
 
 __all__ = [
     "FAMILIES",
     "NOISE_FAMILIES",
+    "AnalysisOfVariance",
+    "CrossedGroups",
     "Family",
     "LogDensity",
     "LogLikelihood",
@@ -16,6 +20,7 @@ __all__ = [
     "Prior",
     "Transform",
     "VectorTransform",
+    "crossed_analysis_of_variance",
     "make_prior",
     "noise_family",
     "transform_for",

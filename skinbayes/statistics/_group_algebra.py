@@ -130,14 +130,15 @@ def condition_effects(
     column = normal[:, :, eliminated]
     pivots = 1.0 + outer**2 * np.diagonal(column[:, eliminated], axis1=1, axis2=2)
     others = np.take(normal, kept, axis=1)
-    coupling = outer[:, :, None] * np.swapaxes(others[:, :, eliminated], 1, 2) * inner[:, None, :]
+    between = np.swapaxes(others[:, :, eliminated], 1, 2)
+    coupling = np.ascontiguousarray(outer[:, :, None] * between * inner[:, None, :])
     complement = inner[:, :, None] * np.take(others, kept, axis=2) * inner[:, None, :]
     diagonal = np.arange(len(kept))
     complement[:, diagonal, diagonal] += 1.0
     halved = coupling / np.sqrt(pivots)[:, :, None]
     complement -= np.matmul(np.swapaxes(halved, 1, 2), halved)
     factor, sound = _cholesky(complement)
-    inverse = np.linalg.inv(factor)
+    inverse = np.asarray(np.linalg.inv(factor), dtype=float)
 
     target = scale * projection
     share = target[:, eliminated] / pivots
@@ -154,18 +155,18 @@ def condition_effects(
 
 
 def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Each matrix of a stack times its vector."""
-    return np.matmul(matrices, vectors[:, :, None])[:, :, 0]
+    """Each matrix of a stack times its vector; contiguous, because matmul sums strided vectors in another order."""
+    return np.matmul(matrices, np.ascontiguousarray(vectors)[:, :, None])[:, :, 0]
 
 
 def _cholesky(matrices: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Lower factors of a stack of I + (positive semidefinite), and which of them are right; the unit matrix for the others."""
     unit = np.eye(matrices.shape[-1])
-    sound = np.isfinite(matrices).all(axis=(-2, -1))
+    sound: NDArray[np.bool_] = np.all(np.isfinite(matrices), axis=(-2, -1))
     if not sound.all():
         matrices = np.where(sound[:, None, None], matrices, unit)
     try:
-        factors = np.linalg.cholesky(matrices)
+        factors = np.asarray(np.linalg.cholesky(matrices), dtype=float)
     except np.linalg.LinAlgError:  # one bad item spoils the whole call
         factors = np.empty_like(matrices)
         for i, matrix in enumerate(matrices):
