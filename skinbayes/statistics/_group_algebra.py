@@ -24,29 +24,30 @@ class CellSums:
     ----------
     rows : rows in order of their cells, shape ``(M,)``
     starts : where each occupied cell starts in ``rows``, shape ``(K,)``
-    cells : number of each occupied cell, shape ``(K,)``
-    size : number of cells, occupied or not
+    place : place of each wanted cell among the occupied ones, K for an empty one; any shape
     """
 
     rows: NDArray[np.intp]
     starts: NDArray[np.intp]
-    cells: NDArray[np.intp]
-    size: int
+    place: NDArray[np.intp]
 
     @classmethod
-    def of(cls, cell_of_row: NDArray[np.intp], size: int) -> CellSums:
-        """Prepare sums for rows that count in several cells: ``cell_of_row`` of shape ``(P, N)``, numbers below ``size``."""
+    def of(cls, cell_of_row: NDArray[np.intp], wanted: NDArray[np.intp]) -> CellSums:
+        """Prepare sums for rows that count in P cells each, ``cell_of_row`` of shape ``(P, N)``, over the cells ``wanted``."""
         order = np.argsort(cell_of_row, axis=None, kind="stable")
         cells = cell_of_row.ravel()[order]
         starts = np.flatnonzero(np.concatenate([[True], cells[1:] != cells[:-1]]))
-        return cls(order % cell_of_row.shape[1], starts, cells[starts], size)
+        occupied = cells[starts]
+        place = np.searchsorted(occupied, wanted)
+        empty = occupied[np.minimum(place, len(occupied) - 1)] != wanted
+        return cls(order % cell_of_row.shape[1], starts, np.where(empty, len(occupied), place))
 
     def __call__(self, values: FloatArray) -> FloatArray:
-        """Sums of ``values`` of shape ``(B, N)``, shape ``(B, size)``; zero for empty cells."""
-        sums = np.add.reduceat(np.take(values, self.rows, axis=-1), self.starts, axis=-1)
-        found = np.zeros((len(values), self.size))
-        found[:, self.cells] = sums
-        return found
+        """Sums of ``values`` of shape ``(B, N)`` over the wanted cells, shape ``(B, *place.shape)``; zero for empty ones."""
+        count = len(self.starts)
+        sums = np.zeros((len(values), count + 1))
+        np.add.reduceat(np.take(values, self.rows, axis=-1), self.starts, axis=-1, out=sums[:, :count])
+        return np.take(sums, self.place, axis=-1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from math import inf, nan
 
 import numpy as np
 import pytest
-from crossed_designs import Case, balanced_labels, random_labels
+from crossed_designs import Case, balanced_labels, balanced_log_density, random_labels
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -63,29 +63,10 @@ def test_nested_columns_and_equal_widths():
         np.testing.assert_allclose(found.groups.log_density(*found.arguments), expected, rtol=1e-11)
 
 
-def test_a_balanced_table_has_closed_form_eigenvalues():
-    """11 by 15 levels with one value in each cell: Σ has four eigenvalues, on the spaces of the analysis of variance."""
-    rng = np.random.default_rng(3)
-    a, b, width = 11, 15, 0.3
-    case = Case(rng, balanced_labels(a, b), batch=20)
-    table = case.residual.reshape(20, a, b)
-    mean = table.mean(axis=(1, 2))
-    rows, columns = table.mean(axis=2) - mean[:, None], table.mean(axis=1) - mean[:, None]
-    rest = table - mean[:, None, None] - rows[:, :, None] - columns[:, None, :]
-    s1, s2 = case.scales.T
-    values = [np.full(20, width**2), width**2 + b * s1**2, width**2 + a * s2**2]
-    values.append(values[1] + values[2] - values[0])
-    squares = [
-        (rest**2).sum((1, 2)),
-        b * (rows**2).sum(1),
-        a * (columns**2).sum(1),
-        a * b * mean**2,
-    ]
-    counts = [(a - 1) * (b - 1), a - 1, b - 1, 1]
-    expected = sum(
-        -0.5 * (n * np.log(2 * np.pi * v) + q / v) for n, v, q in zip(counts, values, squares, strict=True)
-    )
-    found = case.groups.log_density(case.residual, width, case.scales)
+def test_a_balanced_table_has_a_closed_form():
+    case = Case(np.random.default_rng(3), balanced_labels(11, 15), batch=20)
+    expected = balanced_log_density(case.residual.reshape(20, 11, 15), 0.3, *case.scales.T)
+    found = case.groups.log_density(case.residual, 0.3, case.scales)
     np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 
