@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
+
+_PART = 128
+"""Vectors that are worked on at once; larger arrays cost more in fresh memory than they save in calls."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +34,18 @@ class GroupData:
     weight: FloatArray
     scale: FloatArray
     possible: NDArray[np.bool_]
+
+    def parts(self) -> Iterator[GroupData]:
+        """The batch in parts whose matrices fit in the cache; at least one, also of an empty batch."""
+        for start in range(0, max(len(self.residual), 1), _PART):
+            place = slice(start, start + _PART)
+            yield GroupData(
+                self.residual[place],
+                self.width[place],
+                self.weight[place],
+                self.scale[place],
+                self.possible[place],
+            )
 
 
 def scale_of_effects(scales: FloatArray, level_counts: Sequence[int]) -> FloatArray:

@@ -342,6 +342,9 @@ class CrossedGroups:
 
     def _log_density(self, data: GroupData, rows: NDArray[np.bool_] | None = None) -> FloatArray:
         """Joint log-density of all rows, or of those marked."""
+        return np.concatenate([self._log_density_of_part(part, rows) for part in data.parts()])
+
+    def _log_density_of_part(self, data: GroupData, rows: NDArray[np.bool_] | None) -> FloatArray:
         with np.errstate(all="ignore"):
             weight, log_width, count = data.weight, np.log(data.width), self.n_rows
             if rows is not None:

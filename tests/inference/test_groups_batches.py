@@ -45,6 +45,15 @@ def test_a_batch_is_its_vectors_to_the_last_bit(name, equal_widths):
         np.testing.assert_array_equal(together, turned[::-1])
 
 
+@pytest.mark.parametrize("batch", [0, 1, 127, 128, 129, 300])
+def test_large_and_empty_batches_are_worked_on_in_parts(batch):
+    case = Case(np.random.default_rng(11), LABELS["unbalanced"], batch=batch)
+    found = case.groups.log_density(*case.arguments)
+    assert found.shape == (batch,)
+    apart = [case.groups.log_density(*(a[b : b + 1] for a in case.arguments))[0] for b in range(batch)]
+    np.testing.assert_array_equal(found, apart)
+
+
 @pytest.mark.parametrize("name", LABELS)
 def test_draws_of_a_batch_are_draws_one_by_one(name):
     case = Case(np.random.default_rng(10), LABELS[name], batch=9)
