@@ -30,6 +30,7 @@ class Provenance(BaseModel):
     kind : ``"measurements"`` can be fitted; ``"reference"`` collects published values for priors and checks
     where : table, figure, file or section that was read
     how_read : copied from text, from deposited files, digitised
+    digitised_by : who read a figure, if one was read
     transformation : what was done to the numbers between the source and ``data.csv``
     spread : what the spread columns mean, or that there are none
     caveats : what a user has to know before trusting a fit
@@ -48,6 +49,7 @@ class Provenance(BaseModel):
     kind: Literal["measurements", "reference"]
     where: Text
     how_read: Text
+    digitised_by: Text | None = None
     transformation: Text
     spread: Text
     caveats: list[Text] = []

@@ -124,6 +124,18 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS) -> Table:
     return Table(path, header, header_line, tuple(lines), tuple(rows), digest.hexdigest())
 
 
+def text_lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Number (from 1) and text of every line of a UTF-8 file, without line ends.
+
+    Raises
+    ------
+    InputError
+        for an unreadable, binary or wrongly encoded file, or a line too long for a table
+    """
+    for number, raw in _lines(path):
+        yield number, _decode(raw, path, number)
+
+
 def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
     try:
         with path.open("rb") as stream:
