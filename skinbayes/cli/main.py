@@ -11,6 +11,7 @@ from skinbayes import __version__
 from skinbayes.cli.catalogue import datasets, models, show
 from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
+from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
 from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED
 from skinbayes.cli.predict import predict
@@ -39,7 +40,7 @@ def cli() -> None:
     """
 
 
-for _command in (models, datasets, show, check, prior, predict, fit, compare, report):
+for _command in (models, datasets, show, digitised, check, prior, predict, fit, compare, report):
     cli.add_command(_command)
 
 

@@ -1,0 +1,226 @@
+"""``digitised``: points read off a figure become a data set with reading errors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from skinbayes.cli.new_file import refuse_existing, write_text
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+from skinbayes.errors import InputError
+
+if TYPE_CHECKING:
+    from skinbayes.files.digitised import DigitisedFile, DigitisedSet
+
+
+@click.command()
+@click.argument("file")
+@click.option("--abscissa", metavar="'NAME [UNIT]'", help="What the x axis shows, with the unit of the axis.")
+@click.option("--ordinate", metavar="'NAME [UNIT]'", help="What the y axis shows, with the unit of the axis.")
+@click.option(
+    "--set-name",
+    "names",
+    multiple=True,
+    metavar="NAME[=LABEL]",
+    help="Use this data set of the export; can be repeated.",
+)
+@click.option(
+    "--label-column", metavar="COLUMN", help="Label column that tells the data sets apart, such as liquid."
+)
+@click.option("--constant", "pairs", multiple=True, metavar="NAME=VALUE", help="Add a column with one value.")
+@click.option(
+    "--abscissa-error", metavar="ERROR", help="Reading error of the x axis: '2 %' of the value, or in a unit."
+)
+@click.option(
+    "--ordinate-error", metavar="ERROR", help="Reading error of the y axis: '2 %' of the value, or in a unit."
+)
+@click.option(
+    "--pixel-error",
+    type=float,
+    metavar="N",
+    help="Reading error in pixels of a project file's picture.  [default: 1]",
+)
+@click.option("--logarithmic-abscissa", is_flag=True, help="The export holds log10 of the x values.")
+@click.option("--logarithmic-ordinate", is_flag=True, help="The export holds log10 of the y values.")
+@click.option("-o", "--output", metavar="FILE.csv", help="CSV to write, or a folder for data.csv.")
+@click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
+@json_option
+def digitised(
+    file: str,
+    abscissa: str | None,
+    ordinate: str | None,
+    names: tuple[str, ...],
+    label_column: str | None,
+    pairs: tuple[str, ...],
+    abscissa_error: str | None,
+    ordinate_error: str | None,
+    pixel_error: float | None,
+    logarithmic_abscissa: bool,
+    logarithmic_ordinate: bool,
+    output: str | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Turn points digitised with WebPlotDigitizer into a data set with reading errors.
+
+    FILE is a project (JSON or tar) or a CSV export. Alone, its data sets are listed. A project holds the calibration of
+    the axes, from which the reading errors follow; for a CSV state them.
+    """
+    from skinbayes.files.digitised import read_digitised
+    from skinbayes.files.digitised_axes import parse_axis
+    from skinbayes.files.digitised_columns import PIXEL_ERROR, digitised_table
+    from skinbayes.files.digitised_provenance import provenance_template
+
+    export = read_digitised(file)
+    if abscissa is None and ordinate is None and output is None:
+        _list(export, as_json)
+        return
+    if abscissa is None or ordinate is None or output is None:
+        missing = [
+            name
+            for name, value in (("--abscissa", abscissa), ("--ordinate", ordinate), ("--output", output))
+            if value is None
+        ]
+        raise InputError(
+            f"{file}: {' and '.join(missing)} missing; expected what both axes show and where to write"
+        )
+    meanings = (
+        parse_axis(abscissa, "--abscissa", logarithmic=logarithmic_abscissa, error=abscissa_error),
+        parse_axis(ordinate, "--ordinate", logarithmic=logarithmic_ordinate, error=ordinate_error),
+    )
+    sets = _chosen(export, names)
+    if pixel_error is not None:
+        _check_pixel_error(export, pixel_error, all(meaning.error is not None for meaning in meanings))
+    target, described_in = _targets(output)
+    if target.exists() and target.samefile(export.path):
+        raise InputError(f"{target}: this is the export itself; expected another file to write")
+    constants = _constants(pairs)
+    table = digitised_table(
+        sets,
+        meanings,
+        str(export.path),
+        pixel_error=PIXEL_ERROR if pixel_error is None else pixel_error,
+        label_column=label_column,
+        constants=constants,
+    )
+    refuse_existing([target, described_in], overwrite)
+    write_text(target, table.csv_text())
+    sha256 = _loads(target)
+    kept = described_in.exists()
+    if not kept:
+        chosen = [one.name for one in sets.values()]
+        write_text(described_in, provenance_template(export, chosen, meanings, table, constants, sha256))
+    rows = {label: len(one.places) for label, one in sets.items()}
+    if as_json:
+        print_json({
+            "file": str(target), "provenance": str(described_in), "provenance_kept": kept, "sha256": sha256,
+            "source": export.kind, "rows": sum(rows.values()), "sets": rows, "errors": list(table.errors),
+            "units": dict(table.units), "columns": dict(table.columns),
+        })  # fmt: skip
+        return
+    click.echo(f"data:       {target} ({sum(rows.values())} rows)")
+    click.echo(f"provenance: {described_in} ({'kept as it was' if kept else 'to be completed'})\n")
+    print_sentences(table.errors, "Reading errors, one standard deviation")
+    if kept:
+        click.echo(f"\nThe sha256 of the data is now {sha256}; the provenance has to say so.")
+
+
+def _list(export: DigitisedFile, as_json: bool) -> None:
+    documents: list[dict[str, Any]] = []
+    for one in export.sets:
+        scales = None if one.axes is None else ["log" if flag else "linear" for flag in one.axes.logarithmic]
+        documents.append(
+            {"name": one.name, "points": len(one.places), "minimum": one.values.min(axis=0),
+             "maximum": one.values.max(axis=0), "axes": scales}
+        )  # fmt: skip
+    if as_json:
+        print_json(
+            {
+                "file": str(export.path),
+                "source": export.kind,
+                "sets": documents,
+                "left_out": dict(export.left_out),
+            }
+        )
+        return
+    click.echo(f"{export.path}: {export.kind}")
+    rows = [
+        (
+            item["name"],
+            str(item["points"]),
+            *(f"{item['minimum'][i]:.4g} to {item['maximum'][i]:.4g}" for i in (0, 1)),
+            "not known" if item["axes"] is None else ", ".join(item["axes"]),
+        )
+        for item in documents
+    ]
+    print_table(("data set", "points", "abscissa", "ordinate", "axes"), rows, right=(1,))
+    if export.left_out:
+        print_sentences(
+            [f"{name or 'without name'}: {why}" for name, why in export.left_out.items()], "Not usable"
+        )
+
+
+def _chosen(export: DigitisedFile, names: tuple[str, ...]) -> dict[str, DigitisedSet]:
+    """Label to data set. ``NAME=LABEL`` is split at the last equals sign, unless a data set has that very name."""
+    known = {one.name for one in export.sets} | set(export.left_out)
+    wanted: list[tuple[str, str]] = []
+    for text in names:
+        name, equals, label = text.rpartition("=")
+        split = bool(equals) and text not in known
+        wanted.append((name.strip(), label.strip()) if split else (text, text))
+    sets = export.select([name for name, _ in wanted])
+    labels = [label for _, label in wanted] or [one.name for one in sets]
+    if len(set(labels)) < len(labels):
+        raise InputError(
+            f"{export.path}: two data sets have the same label; expected different ones: --set-name NAME=LABEL"
+        )
+    return dict(zip(labels, sets, strict=True))
+
+
+def _check_pixel_error(export: DigitisedFile, pixel_error: float, all_stated: bool) -> None:
+    if not 0.0 < pixel_error < float("inf"):
+        raise InputError(f"--pixel-error: found {pixel_error:g}; expected a number of pixels > 0")
+    if all_stated:
+        raise InputError(
+            "--pixel-error: the errors of both axes are stated as well; expected one or the other"
+        )
+    if any(one.axes is None for one in export.sets):
+        raise InputError(
+            f"--pixel-error: {export.path} is a CSV, which holds no pixels; expected --abscissa-error and --ordinate-error"
+        )
+
+
+def _targets(output: str) -> tuple[Path, Path]:
+    """The CSV and its provenance; a folder gets both under the names that make it a data set."""
+    path = Path(output)
+    if path.suffix.lower() != ".csv":
+        if path.suffix or path.is_file():
+            raise InputError(
+                f"--output: found {output[:200]}; expected a file that ends in .csv, or a folder"
+            )
+        path = path / "data.csv"
+    name = "provenance.toml" if path.name == "data.csv" else f"{path.stem}.provenance.toml"
+    return path, path.with_name(name)
+
+
+def _constants(pairs: tuple[str, ...]) -> dict[str, str]:
+    constants: dict[str, str] = {}
+    for pair in pairs:
+        name, equals, value = (part.strip() for part in pair.partition("="))
+        if not equals or not name or not value:
+            raise InputError(
+                f'--constant {pair[:80]}: expected NAME=VALUE, for example --constant sphere_radius="8 mm"'
+            )
+        if name in constants:
+            raise InputError(f"--constant {name}: set twice")
+        constants[name] = value
+    return constants
+
+
+def _loads(target: Path) -> str:
+    """Read what was written as any data set; its sha256."""
+    from skinbayes.files.dataset import load_dataset
+
+    return load_dataset(target).sha256
