@@ -143,6 +143,7 @@ _ALL = (
     Quantity("contact_width", "D", "m", "width of the sliding track"),
     Quantity("surface_temperature", "T_s", "K", "temperature of the water on the skin"),
     Quantity("air_temperature", "T_a", "K", "temperature of the air"),
+    Quantity("latent_heat", "Y", "J/kg", "latent heat of evaporation of water"),
     _closed("air_speed", "v_air", "m/s", "speed of the air over the water"),
     # drying
     _closed("wetting_time", "t_wet", "s", "time at which the skin is wetted"),
@@ -160,8 +161,16 @@ _ALL = (
     _closed("dry_time", "t_dry", "s", "time at which the film is gone"),
     # people
     _closed("skin_hydration", "hydration", "1", "corneometer reading, arbitrary units"),
+    # groups of data
+    _closed(
+        "group_scale",
+        "s",
+        "1",
+        "standard deviation of effects that groups of data share, of ln if the noise is logarithmic",
+    ),
+    Quantity("covariate_exponent", "k", "1", "power with which a column of the data acts", lower=-inf),
     # noise and discrepancy
-    Quantity("noise_scale", "σ_noise", "1", "scale of the scatter about the forward model"),
+    _closed("noise_scale", "σ_noise", "1", "scale of the scatter about the forward model"),
     Quantity("degrees_of_freedom", "ν_t", "1", "degrees of freedom of Student's t"),
     Quantity(
         "discrepancy_factor",

@@ -93,7 +93,7 @@ def _show_model(name: str, as_json: bool) -> None:
     if as_json:
         print_json({
             "model": spec.name, "title": spec.title, "description": spec.description, "forward": spec.forward,
-            "dataset": spec.dataset, "rows": spec.rows, "observable": spec.observable, "noise": spec.noise,
+            "dataset": spec.dataset, "rows": spec.rows, "observables": spec.observables, "noise": spec.noise,
             "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
         })  # fmt: skip
         return
@@ -103,8 +103,12 @@ def _show_model(name: str, as_json: bool) -> None:
         f"data set:      {spec.dataset or 'none (predict only)'}"
         + (f", rows {spec.rows}" if spec.rows else "")
     )
-    if spec.noise:
-        click.echo(f"noise:         {spec.noise}")
+    for observable, noise in spec.noise.items():
+        click.echo(f"observable:    {observable}, noise {noise}")
+    if spec.rheology:
+        click.echo(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
+    for covariate in spec.covariates:
+        click.echo(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
     rows = []
     for p in problem.free:
         rows.append((p.label, p.prior_text, p.source))

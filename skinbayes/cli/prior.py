@@ -30,15 +30,17 @@ def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) ->
     if as_json:
         print_json(result.to_dict())
         return
-    unit = QUANTITIES[result.observable].unit
-    rows = [
-        (
-            row.label,
-            *(format_quantity(v, unit) for v in (row.observed, row.q05, row.median, row.q95)),
-            f"{100 * row.share_below:.0f} %",
-        )
-        for row in result.rows
-    ]
-    print_table(("row", "observed", "prior 5 %", "prior median", "prior 95 %", "draws below"), rows, right=(1, 2, 3, 4, 5),
-                title=result.observable)  # fmt: skip
+    for observable in result.observables:
+        unit = QUANTITIES[observable].unit
+        rows = [
+            (
+                row.label,
+                *(format_quantity(v, unit) for v in (row.observed, row.q05, row.median, row.q95)),
+                f"{100 * row.share_below:.0f} %",
+            )
+            for row in result.rows
+            if row.observable == observable
+        ]
+        print_table(("row", "observed", "prior 5 %", "prior median", "prior 95 %", "draws below"), rows,
+                    right=(1, 2, 3, 4, 5), title=observable)  # fmt: skip
     print_sentences(result.sentences())

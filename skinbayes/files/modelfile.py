@@ -11,15 +11,13 @@ from pydantic import ValidationError
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.files.group_block import CovariateSpec, read_covariates, read_groups
 from skinbayes.files.locate import shipped_folder, shipped_names
-from skinbayes.files.modelschema import DerivedBlock, GridBlock, ModelBlock
-from skinbayes.files.parameter_block import ParameterSpec, parse_parameter, parse_value
+from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, ModelBlock, RheologyBlock
+from skinbayes.files.noise_block import NOISE_PARAMETERS, read_noise
+from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_value
 from skinbayes.files.toml_text import explain, line_of, read_toml
-from skinbayes.statistics.noise import NOISE_FAMILIES
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
-
-NOISE_PARAMETERS = ("noise_scale", "degrees_of_freedom", "discrepancy_factor", "discrepancy_scale")
-"""Parameters that live in ``[noise]``."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +30,16 @@ class ModelSpec:
     path : the file
     text : the file as it stands
     title, description, forward : as written
-    dataset, rows, observable, spread : the data set (shipped key or path), the rows kept, the column explained, and
-        whether its spread column is used; all None or empty for a model without data
+    dataset, rows, observables : the data set (shipped key or path), the rows kept, the columns explained; None or empty for a
+        model without data
+    spread, input_spread : whether spread columns of the observables, and of the inputs, are used; None if not said
     surface_name, surface_file : named surface or tabulated spectrum
     parameters : parameters of the forward model, fixed and free
-    noise : name of the noise family, or None
+    noise : observable to the name of its noise family
     noise_parameters : parameters of noise and discrepancy
+    groups : scales of group effects, ``group_scale[person]``
+    covariates, covariate_exponents : columns that act as a power on an input or the observable, and their exponents
+    rheology, rheology_by : data set of flow curves (shipped key or path) and the grouping column they belong to, or None
     derived : named products to compute afterwards
     conditions : conditions used by ``predict`` when none are given
     """
@@ -51,12 +53,18 @@ class ModelSpec:
     parameters: tuple[ParameterSpec, ...]
     dataset: str | None = None
     rows: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    observable: str | None = None
+    observables: tuple[str, ...] = ()
     spread: str | None = None
+    input_spread: str | None = None
     surface_name: str | None = None
     surface_file: Path | None = None
-    noise: str | None = None
+    noise: dict[str, str] = field(default_factory=dict)
     noise_parameters: tuple[ParameterSpec, ...] = ()
+    groups: tuple[ParameterSpec, ...] = ()
+    covariates: tuple[CovariateSpec, ...] = ()
+    covariate_exponents: tuple[ParameterSpec, ...] = ()
+    rheology: str | None = None
+    rheology_by: str | None = None
     derived: dict[str, DerivedBlock] = field(default_factory=dict)
     conditions: dict[str, FloatArray] = field(default_factory=dict)
 
@@ -106,15 +114,22 @@ def load_model(name: str | Path) -> ModelSpec:
         return f"{path}{f', line {line}' if line else ''}: {'.'.join(keys)}"
 
     _check_printable(content, where)
-    parameters = _read_parameters(block.parameters, "parameters", where, _parameter_quantity)
+    parameters = _read_parameters(block.parameters, where)
     data, noise = block.data, block.noise
-    noise_name: str | None = None
+    families: dict[str, str] = {}
     noise_parameters: tuple[ParameterSpec, ...] = ()
     if data is not None and noise is not None:
-        noise_name, noise_parameters = _read_noise(noise, data.observable, where)
-    dataset: str | None = None
-    if data is not None:
-        dataset = data.dataset or str((path.parent / str(data.file)).resolve())
+        families, noise_parameters = read_noise(noise, data.names(), data.observables is not None, where)
+    covariates, exponents = read_covariates(block.covariates, where)
+
+    def resolved(table: DataBlock | RheologyBlock | None) -> str | None:
+        return None if table is None else table.dataset or str((path.parent / str(table.file)).resolve())
+
+    rheology = block.rheology
+    if rheology is not None and rheology.by not in LABELS:
+        raise InputError(
+            f"{where('rheology', 'by')}: found {rheology.by!r}; expected a grouping column: {', '.join(LABELS)}"
+        )
     surface = block.surface
     surface_file = None
     if surface is not None and surface.file is not None:
@@ -127,14 +142,20 @@ def load_model(name: str | Path) -> ModelSpec:
         description=block.description.strip(),
         forward=block.forward,
         parameters=parameters,
-        dataset=dataset,
+        dataset=resolved(data),
         rows={} if data is None else {key: tuple(levels) for key, levels in data.rows.items()},
-        observable=None if data is None else data.observable,
+        observables=() if data is None else tuple(data.names()),
         spread=None if data is None else data.spread,
+        input_spread=None if data is None else data.input_spread,
         surface_name=None if surface is None else surface.name,
         surface_file=surface_file,
-        noise=noise_name,
+        noise=families,
         noise_parameters=noise_parameters,
+        groups=read_groups(block.groups, families, where),
+        covariates=covariates,
+        covariate_exponents=exponents,
+        rheology=resolved(rheology),
+        rheology_by=None if rheology is None else rheology.by,
         derived=block.derived,
         conditions={
             key: _read_grid(key, grid, where("conditions", key)) for key, grid in block.conditions.items()
@@ -163,64 +184,16 @@ def _parameter_quantity(name: str, where: str) -> Quantity:
     return QUANTITIES[name]
 
 
-def _noise_quantity(name: str, where: str) -> Quantity:
-    if name not in NOISE_PARAMETERS:
-        known = ["family", *NOISE_PARAMETERS]
-        raise InputError(
-            f"{where}: unknown key '{name}'.{suggestions(name, known)} Expected {', '.join(known)}"
-        )
-    return QUANTITIES[name]
-
-
-def _read_parameters(
-    block: dict[str, Any], table: str, where: Any, quantity_of: Any, unit: str | None = None
-) -> Any:
+def _read_parameters(block: dict[str, Any], where: Any) -> tuple[ParameterSpec, ...]:
     specs: list[ParameterSpec] = []
     for name, entry in block.items():
-        place = where(table, name)
-        quantity = quantity_of(name, place)
-        unit_here = unit if name == "noise_scale" else None
-        if not (isinstance(entry, dict) and "by" in entry):
-            specs.append(parse_parameter(quantity, entry, place, unit_here))
-            continue
-        column = entry["by"]
-        if column not in LABELS:
-            raise InputError(f"{place}.by: found {column!r}; expected a grouping column: {', '.join(LABELS)}")
-        levels = {key: value for key, value in entry.items() if key != "by"}
-        if not levels:
-            raise InputError(f"{place}: 'by = \"{column}\"' but no level is given")
-        for level, value in levels.items():
-            specs.append(
-                parse_parameter(quantity, value, where(table, name, level), unit_here, by=column, level=level)
-            )
+        quantity = _parameter_quantity(name, where("parameters", name))
+
+        def place(*keys: str, name: str = name) -> str:
+            return str(where("parameters", name, *keys))
+
+        specs += parse_levels(quantity, entry, place)
     return tuple(specs)
-
-
-def _read_noise(block: dict[str, Any], observable: str, where: Any) -> tuple[str, tuple[ParameterSpec, ...]]:
-    family = block.get("family")
-    names = list(NOISE_FAMILIES)
-    if family not in names:
-        hint = suggestions(str(family), names)
-        raise InputError(
-            f"{where('noise', 'family')}: found {family!r}.{hint} Expected one of {', '.join(names)}"
-        )
-    if observable not in QUANTITIES:
-        raise InputError(
-            f"{where('data', 'observable')}: unknown quantity '{observable}'.{suggestions(observable, list(QUANTITIES))}"
-        )
-    noise = NOISE_FAMILIES[str(family)]
-    unit = "1" if noise.relative else QUANTITIES[observable].unit
-    entries = {key: value for key, value in block.items() if key != "family"}
-    parameters = _read_parameters(entries, "noise", where, _noise_quantity, unit)
-    given = {parameter.name for parameter in parameters}
-    needed = {"noise_scale", "degrees_of_freedom"} if noise.heavy_tailed else {"noise_scale"}
-    if missing := sorted(needed - given):
-        raise InputError(f"{where('noise')}: noise family '{family}' needs {' and '.join(missing)}")
-    if "degrees_of_freedom" in given and "degrees_of_freedom" not in needed:
-        raise InputError(
-            f"{where('noise', 'degrees_of_freedom')}: noise family '{family}' has no degrees of freedom"
-        )
-    return str(family), parameters
 
 
 def _read_grid(name: str, grid: GridBlock, where: str) -> FloatArray:

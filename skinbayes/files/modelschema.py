@@ -13,20 +13,37 @@ class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
+def _one_of_two(first: object, second: object, first_name: str, second_name: str) -> None:
+    if (first is None) == (second is None):
+        raise ValueError(f"give either {first_name} or {second_name}")
+
+
 class DataBlock(_Strict):
     """``[data]``: which rows of which data set, and what of it the model explains."""
 
     dataset: str | None = None
     file: str | None = None
-    observable: str
+    observable: str | None = None
+    observables: list[str] | None = Field(default=None, min_length=1)
     rows: dict[str, list[str]] = Field(default_factory=dict)
     spread: Literal["use", "ignore"] | None = None
+    input_spread: Literal["use", "ignore"] | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> DataBlock:
-        if (self.dataset is None) == (self.file is None):
-            raise ValueError("give either 'dataset' (a shipped data set) or 'file' (the path of a CSV)")
+        _one_of_two(self.dataset, self.file, "'dataset' (a shipped data set)", "'file' (the path of a CSV)")
         return self
+
+    @model_validator(mode="after")
+    def _something_observed(self) -> DataBlock:
+        _one_of_two(self.observable, self.observables, "'observable'", "'observables' (a list of several)")
+        if len(set(self.names())) < len(self.names()):
+            raise ValueError(f"'observables' names one twice: {', '.join(self.names())}")
+        return self
+
+    def names(self) -> list[str]:
+        """All observables."""
+        return list(self.observables or [str(self.observable)])
 
 
 class SurfaceBlock(_Strict):
@@ -37,9 +54,36 @@ class SurfaceBlock(_Strict):
 
     @model_validator(mode="after")
     def _one_source(self) -> SurfaceBlock:
-        if (self.name is None) == (self.file is None):
-            raise ValueError("give either 'name' (a named surface) or 'file' (the path of a spectrum CSV)")
+        _one_of_two(self.name, self.file, "'name' (a named surface)", "'file' (the path of a spectrum CSV)")
         return self
+
+
+class RheologyBlock(_Strict):
+    """``[rheology]``: measured flow curves of the liquids, which stand for ``viscosity``."""
+
+    dataset: str | None = None
+    file: str | None = None
+    by: str
+
+    @model_validator(mode="after")
+    def _one_source(self) -> RheologyBlock:
+        _one_of_two(self.dataset, self.file, "'dataset' (a shipped data set)", "'file' (the path of a CSV)")
+        return self
+
+
+class GroupBlock(_Strict):
+    """``[groups.COLUMN]``: data of one level of a grouping column share an effect."""
+
+    scale: Any
+
+
+class CovariateBlock(_Strict):
+    """``[covariates.NAME]``: a column of the data that multiplies an input or the observable as a power."""
+
+    column: str
+    acts_on: str
+    reference: str | float | int
+    exponent: Any
 
 
 class DerivedBlock(_Strict):
@@ -96,6 +140,9 @@ class ModelBlock(_Strict):
     surface: SurfaceBlock | None = None
     parameters: dict[str, Any]
     noise: dict[str, Any] | None = None
+    groups: dict[str, GroupBlock] = Field(default_factory=dict)
+    covariates: dict[str, CovariateBlock] = Field(default_factory=dict)
+    rheology: RheologyBlock | None = None
     derived: dict[str, DerivedBlock] = Field(default_factory=dict)
     conditions: dict[str, GridBlock] = Field(default_factory=dict)
 

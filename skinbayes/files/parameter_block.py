@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
 from skinbayes.units import parse_quantity
-from skinbayes.vocabulary import Quantity, suggestions
+from skinbayes.vocabulary import LABELS, Quantity, suggestions
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,7 @@ class ParameterSpec:
     ----------
     name : name in the vocabulary
     unit : SI unit
-    by, level : grouping column and its level, if the parameter has one value for each level; otherwise None
+    by, level : what the parameter differs by (a grouping column, the observables, …) and the level it is for; otherwise None
     value : SI value of a fixed parameter, else None
     prior : prior of a free parameter in SI, else None
     prior_text : the prior as it was written
@@ -96,6 +97,28 @@ def parse_parameter(
     return ParameterSpec(
         quantity.name, unit, by, level, None, prior, f"{key}({_as_written(entry[key])})", source
     )
+
+
+def parse_levels(
+    quantity: Quantity, entry: Any, where: Callable[..., str], unit: str | None = None
+) -> list[ParameterSpec]:
+    """Turn an entry into one parameter, or into one for each level of the grouping column that it names with ``by``.
+
+    ``where`` gives the place of the entry, and of keys below it, for messages. Raises :class:`InputError` as
+    `parse_parameter` does, and for a column that cannot group or has no levels.
+    """
+    if not (isinstance(entry, dict) and "by" in entry):
+        return [parse_parameter(quantity, entry, where(), unit)]
+    column = entry["by"]
+    if column not in LABELS:
+        raise InputError(f"{where()}.by: found {column!r}; expected a grouping column: {', '.join(LABELS)}")
+    levels = {key: value for key, value in entry.items() if key != "by"}
+    if not levels:
+        raise InputError(f"{where()}: 'by = \"{column}\"' but no level is given")
+    return [
+        parse_parameter(quantity, value, where(level), unit, by=column, level=level)
+        for level, value in levels.items()
+    ]
 
 
 def parse_value(quantity: Quantity, raw: Any, where: str, unit: str | None = None) -> float:

@@ -77,7 +77,7 @@ def sample(
     from skinbayes.sampling.options import SamplerOptions
     from skinbayes.sampling.store import SampleStore
 
-    if problem.observed is None or problem.dimension == 0:
+    if not problem.observations or problem.dimension == 0:
         raise InputError(
             f"{problem.spec.path}: nothing to infer: the model needs [data] and at least one prior"
         )
@@ -87,6 +87,7 @@ def sample(
     if folder is not None:
         claim_run(folder, problem, resume)
     started, processor = time.perf_counter(), time.process_time()
+    problem.prepare()  # before work is shared out, so that it is done once
     target = problem.target()
     store = None if folder is None else SampleStore(folder / STEPS, resume=resume)
     chains = run_ensembles(target, settings, store=store, progress=progress)
@@ -139,8 +140,9 @@ def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, An
             name: block.symbol for name, block in problem.spec.derived.items() if block.symbol
         },
         "fingerprint": problem.fingerprint,
-        "observable": problem.observable,
-        "noise": problem.spec.noise,
+        "observables": list(problem.observables),
+        "noise": dict(problem.spec.noise),
+        "accuracy": problem.model.accuracy,
         "data": data,
         "references": references(problem),
         "versions": _versions(),

@@ -132,6 +132,7 @@ def _write_inputs(directory: Path, problem: Problem) -> None:
         "fingerprint": problem.fingerprint,
         "data": None,
         "surface": None,
+        "rheology": None,
         "settings": {name: text for name, text in problem.settings.items() if name != "surface"},
     }
     if "surface" in problem.settings and problem.surface_file is None:
@@ -147,6 +148,9 @@ def _write_inputs(directory: Path, problem: Problem) -> None:
             note["data"] = "data"
         else:
             note["data"] = f"data/{source.name}"
+    if problem.spec.rheology is not None and Path(problem.spec.rheology).is_file():
+        _copy(Path(problem.spec.rheology), directory / "rheology.csv")
+        note["rheology"] = "rheology.csv"
     if problem.surface_file is not None:
         _copy(problem.surface_file, directory / "spectrum.csv")
         note["surface"] = "spectrum.csv"
@@ -170,7 +174,8 @@ def _rebuild(path: Path, provenance: Mapping[str, Any]) -> Problem | None:
             settings = dict(note.get("settings") or {})
             if note["surface"]:
                 settings["surface"] = str(path / note["surface"])
-            problem = load_problem(path / "model.toml", path / note["data"], settings)
+            rheology = path / note["rheology"] if note.get("rheology") else None
+            problem = load_problem(path / "model.toml", path / note["data"], settings, rheology=rheology)
         else:
             problem = load_problem(str(provenance["model_path"]))
     except (InputError, OSError, ValueError, KeyError):

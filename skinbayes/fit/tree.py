@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.units import product_unit
-from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX, lookup
 
 if TYPE_CHECKING:
     import xarray
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
 
 CHUNK = 500
 """Parameter vectors predicted at a time, to bound memory with many rows of data."""
+
+FLAG_DRAWS = 500
+"""Draws of which the edge of the theory is looked at."""
 
 
 def posterior_groups(
@@ -34,22 +39,56 @@ def posterior_groups(
     Returns
     -------
     dict
-        ``posterior`` (parameters and derived quantities), ``sample_stats``, ``posterior_predictive`` and
-        ``log_likelihood`` (pointwise)
+        ``posterior`` (parameters, derived quantities, effects of groups), ``sample_stats``, ``posterior_predictive``,
+        ``log_likelihood`` (pointwise), ``log_likelihood_left_out`` (by levels of grouping columns) and ``validity`` (share
+        of the draws in which a row is at the edge of the theory)
     """
-    predictive, pointwise = _predictive(problem, draws, rng)
-    return {
-        "posterior": _parameters(problem, draws),
-        "sample_stats": _dataset({"lp": (("chain", "draw"), log_density)}, problem, draws),
-        "posterior_predictive": _rows(problem, predictive, draws),
-        "log_likelihood": _rows(problem, pointwise, draws),
+    effects = (
+        None if problem.groups is None else _in_parts(lambda part: problem.draw_effects(part, rng), draws)
+    )
+    groups = {
+        "posterior": _parameters(problem, draws, effects),
+        "sample_stats": _dataset({"lp": (("chain", "draw"), log_density)}, draws),
+        "posterior_predictive": _rows(problem, _simulated(problem, draws, rng, effects), draws),
+        "log_likelihood": _rows(
+            problem, _in_parts(lambda part: problem.log_likelihood(part, pointwise=True), draws), draws
+        ),
     }
+    left_out = {
+        column: (
+            ("chain", "draw", f"{column}_level"),
+            _in_parts(partial(problem.log_likelihood_left_out, column=column), draws),
+        )
+        for column in columns_to_leave_out(problem)
+    }
+    if left_out:
+        labels = problem.conditions.labels
+        levels = {f"{column}_level": list(dict.fromkeys(labels[column].tolist())) for column in left_out}
+        groups["log_likelihood_left_out"] = _dataset(left_out, draws, levels)
+    if flags := _flags(problem, draws):
+        groups["validity"] = _dataset(flags, draws, {"row": problem.conditions.row_labels()})
+    return groups
+
+
+def columns_to_leave_out(problem: Problem) -> list[str]:
+    """Grouping columns whose levels are worth leaving out one at a time: several levels, at least one of several rows."""
+    if len(problem.observations) != 1:
+        return []
+    counts = {name: len(set(values.tolist())) for name, values in problem.conditions.labels.items()}
+    return [name for name, count in counts.items() if 1 < count < problem.conditions.n_rows]
+
+
+def _flags(problem: Problem, draws: FloatArray) -> dict[str, Any]:
+    """Share of the draws in which each row's prediction lies at the edge of the theory, by flag."""
+    flat = draws.reshape(-1, draws.shape[-1])
+    found = problem.flags(flat[:: max(1, len(flat) // FLAG_DRAWS)])
+    return {name: (("row",), values.mean(axis=0)) for name, values in found.items()}
 
 
 def prior_groups(problem: Problem, rng: np.random.Generator, count: int) -> dict[str, xarray.Dataset]:
     """``prior`` and ``prior_predictive`` groups of ``count`` draws."""
     draws = problem.draw_prior(rng, count)[np.newaxis]
-    predictive, _ = _predictive(problem, draws, rng, pointwise=False)
+    predictive = _simulated(problem, draws, rng, None)
     return {"prior": _parameters(problem, draws), "prior_predictive": _rows(problem, predictive, draws)}
 
 
@@ -58,15 +97,23 @@ def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
     import xarray
 
     coordinates = {"row": problem.conditions.row_labels()}
-    observed = {problem.observable: (("row",), np.asarray(problem.observed))}
+    observed = {o.name: (("row",), o.values) for o in problem.observations}
     constant: dict[str, Any] = {
-        name: (("row",), values) for name, values in problem.conditions.values.items()
+        name: (("row",), values)
+        for name, values in (*problem.conditions.values.items(), *problem.conditions.covariates.items())
     }
     constant |= {
         name: (("row",), values.astype(object)) for name, values in problem.conditions.labels.items()
     }
-    if problem.observed_spread is not None and problem.observed_spread.any():
-        constant[problem.observable + STANDARD_DEVIATION_SUFFIX] = (("row",), problem.observed_spread)
+    constant |= {
+        o.name + STANDARD_DEVIATION_SUFFIX: (("row",), o.spread)
+        for o in problem.observations
+        if o.spread.any()
+    }
+    constant |= {
+        name + STANDARD_DEVIATION_SUFFIX: (("row",), spread * problem.conditions.values[name])
+        for name, spread in problem.input_spread.items()
+    }
     groups = {
         "observed_data": xarray.Dataset(observed, coords=coordinates),
         "constant_data": xarray.Dataset(constant, coords=coordinates),
@@ -76,8 +123,8 @@ def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
     return groups
 
 
-def _parameters(problem: Problem, draws: FloatArray) -> xarray.Dataset:
-    """Free parameters (levels of a grouping column as a dimension) and derived quantities."""
+def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None = None) -> xarray.Dataset:
+    """Free parameters (levels of a grouping column as a dimension), derived quantities and effects of groups."""
     variables: dict[str, Any] = {}
     coordinates: dict[str, list[str]] = {}
     for name in dict.fromkeys(parameter.name for parameter in problem.free):
@@ -104,9 +151,25 @@ def _parameters(problem: Problem, draws: FloatArray) -> xarray.Dataset:
         else:
             coordinates["row"] = labels
             variables.setdefault(name, (("chain", "draw", "row"), values))
-    dataset = _dataset(variables, problem, draws, coordinates)
+    groups = problem.groups
+    if groups is not None and effects is not None:
+        start = 0
+        for column, members in zip(groups.columns, groups.levels, strict=True):
+            name, dimension = f"{column}_effect", f"{column}_level"
+            coordinates[dimension] = list(members)
+            variables[name] = (
+                ("chain", "draw", dimension),
+                effects[..., start : start + len(members)],
+            )
+            start += len(members)
+    dataset = _dataset(variables, draws, coordinates)
     for key, variable in dataset.data_vars.items():
-        variable.attrs["kind"] = "parameter" if any(p.name == key for p in problem.free) else "derived"
+        own = next((p for p in problem.free if p.name == key), None)
+        variable.attrs["kind"] = (
+            "parameter" if own else "effect" if str(key).endswith("_effect") else "derived"
+        )
+        if own is not None:
+            variable.attrs["units"] = own.unit
         block = problem.spec.derived.get(str(key))
         if block is not None:
             factors = [(QUANTITIES[name].unit, power) for name, power in block.product.items()]
@@ -115,17 +178,24 @@ def _parameters(problem: Problem, draws: FloatArray) -> xarray.Dataset:
     return dataset
 
 
-def _predictive(
-    problem: Problem, draws: FloatArray, rng: np.random.Generator, pointwise: bool = True
-) -> tuple[FloatArray, FloatArray]:
-    shape = (*draws.shape[:2], problem.conditions.n_rows)
+def _simulated(
+    problem: Problem, draws: FloatArray, rng: np.random.Generator, effects: FloatArray | None
+) -> FloatArray:
+    """Data simulated from each draw, with its effects of groups or new ones, shape ``(chain, draw, M)``."""
     flat = draws.reshape(-1, draws.shape[-1])
-    parts = [flat[i : i + CHUNK] for i in range(0, len(flat), CHUNK)]
-    predictive = np.concatenate([problem.simulate(part, rng) for part in parts]).reshape(shape)
-    if not pointwise:
-        return predictive, np.empty(0)
-    density = np.concatenate([problem.log_likelihood(part, pointwise=True) for part in parts]).reshape(shape)
-    return predictive, density
+    given = None if effects is None else effects.reshape(len(flat), -1)
+    parts = [
+        problem.simulate(flat[i : i + CHUNK], rng, None if given is None else given[i : i + CHUNK])
+        for i in range(0, len(flat), CHUNK)
+    ]
+    return np.concatenate(parts).reshape(*draws.shape[:2], -1)
+
+
+def _in_parts(function: Callable[[FloatArray], FloatArray], draws: FloatArray) -> FloatArray:
+    """A function of parameter vectors at all draws, some at a time, shape ``(chain, draw, ·)``."""
+    flat = draws.reshape(-1, draws.shape[-1])
+    parts = [function(flat[i : i + CHUNK]) for i in range(0, len(flat), CHUNK)]
+    return np.concatenate(parts).reshape(*draws.shape[:2], -1)
 
 
 def _in_chunks(function: Any, draws: FloatArray) -> dict[str, FloatArray]:
@@ -144,13 +214,15 @@ def _in_chunks(function: Any, draws: FloatArray) -> dict[str, FloatArray]:
 
 
 def _rows(problem: Problem, values: FloatArray, draws: FloatArray) -> xarray.Dataset:
-    variables = {problem.observable: (("chain", "draw", "row"), values)}
-    return _dataset(variables, problem, draws, {"row": problem.conditions.row_labels()})
+    parts = np.split(values, len(problem.observations), axis=-1)
+    variables = {
+        name: (("chain", "draw", "row"), part) for name, part in zip(problem.observables, parts, strict=True)
+    }
+    return _dataset(variables, draws, {"row": problem.conditions.row_labels()})
 
 
 def _dataset(
     variables: dict[str, Any],
-    problem: Problem,
     draws: FloatArray,
     coordinates: dict[str, list[str]] | None = None,
 ) -> xarray.Dataset:
@@ -164,6 +236,6 @@ def _dataset(
 
 def _add_units(dataset: xarray.Dataset) -> None:
     for name, variable in dataset.data_vars.items():
-        quantity = QUANTITIES.get(str(name))
+        quantity = lookup(str(name))
         if quantity is not None:
             variable.attrs.update(units=quantity.unit, symbol=quantity.symbol, long_name=quantity.meaning)

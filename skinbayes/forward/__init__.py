@@ -10,9 +10,11 @@ from pkgutil import iter_modules
 
 from skinbayes.errors import InputError
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
+from skinbayes.lubrication import FlowCurve
 
 __all__ = [
     "ROUGHNESS_INPUTS",
+    "FlowCurve",
     "ForwardModel",
     "Inputs",
     "Profile",

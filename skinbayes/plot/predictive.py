@@ -71,14 +71,22 @@ def predictive_quantiles(fit: Fit, group: str = "posterior_predictive") -> Float
 
 
 def predictive_draws(fit: Fit, group: str = "posterior_predictive") -> FloatArray:
-    """All predictive draws, shape ``(draws, N)``, SI."""
-    values = fit.groups[group][fit.provenance["observable"]].values
-    return np.asarray(values, dtype=float).reshape(-1, values.shape[-1])
+    """All predictive draws, one observable after the other, shape ``(draws, M)``, SI."""
+    parts = [fit.groups[group][name].values for name in observables(fit)]
+    return np.concatenate(
+        [np.asarray(values, dtype=float).reshape(-1, values.shape[-1]) for values in parts], axis=-1
+    )
+
+
+def observables(fit: Fit) -> tuple[str, ...]:
+    """Names of what was observed."""
+    return tuple(fit.provenance["observables"])
 
 
 def observed_values(fit: Fit) -> FloatArray:
-    """The data, shape ``(N,)``, SI."""
-    return np.asarray(fit.groups["observed_data"][fit.provenance["observable"]].values, dtype=float)
+    """The data, one observable after the other, shape ``(M,)``, SI."""
+    observed = fit.groups["observed_data"]
+    return np.concatenate([np.asarray(observed[name].values, dtype=float) for name in observables(fit)])
 
 
 def row_names(fit: Fit) -> list[str]:
@@ -86,10 +94,40 @@ def row_names(fit: Fit) -> list[str]:
     return [str(row) for row in fit.groups["observed_data"]["row"].values]
 
 
+def datum_names(fit: Fit) -> list[str]:
+    """Names of the data: their row, their observable, or both."""
+    rows, names = row_names(fit), [spoken_name(name) for name in observables(fit)]
+    if len(names) == 1:
+        return rows
+    return names if len(rows) == 1 else [f"{name}, {row}" for name in names for row in rows]
+
+
 def _plot(fit: Fit, group: str, title: str, colour: str) -> Figure:
-    observed = observed_values(fit)
-    quantiles = predictive_quantiles(fit, group)
-    name = str(fit.provenance["observable"])
+    names, rows = observables(fit), row_names(fit)
+    count = len(rows)
+    observed = observed_values(fit).reshape(len(names), count)
+    quantiles = predictive_quantiles(fit, group).reshape(len(LEVELS), len(names), count)
+    with look():
+        if count <= MOST_LABELLED:
+            margin = 0.25 + 0.085 * max(len(_shortened(name)) for name in rows)
+            height = 1.35 + 0.26 * max(count, 3) + (len(names) - 1) * (0.75 + 0.26 * count)
+            figure = new_figure(WIDTH, height, left=margin, bottom=0.85)
+        else:
+            figure = new_figure(WIDTH, 3.6 + 3.0 * (len(names) - 1), left=0.75, bottom=0.85)
+        panels = figure.subplots(len(names), 1, squeeze=False)[:, 0]
+        if len(names) > 1:
+            figure.subplots_adjust(hspace=0.75 / (0.26 * max(count, 3)) if count <= MOST_LABELLED else 0.35)
+        for i, (name, ax) in enumerate(zip(names, panels, strict=True)):
+            _panel(ax, name, observed[i], quantiles[:, i], rows, colour)
+        key_below(figure, panels[-1], 3)
+        set_title(figure, fit, title)
+    return figure
+
+
+def _panel(
+    ax: Axes, name: str, observed: FloatArray, quantiles: FloatArray, rows: list[str], colour: str
+) -> None:
+    """One observable: its data and their predictive distributions."""
     quantity = lookup(name)
     unit, symbol = (quantity.unit, quantity.symbol) if quantity else ("1", name)
     scale = scale_for(unit, quantiles.ravel(), observed)
@@ -97,32 +135,22 @@ def _plot(fit: Fit, group: str, title: str, colour: str) -> Figure:
     order = np.arange(count) if count <= MOST_LABELLED else np.argsort(quantiles[2], kind="stable")
     bands, points = scale.shown(quantiles[:, order]), scale.shown(observed[order])
     label = scale.label(f"{spoken_name(name)} {figure_text(symbol)}")
-    with look():
-        if count <= MOST_LABELLED:
-            names = [_shortened(name) for name in row_names(fit)]
-            margin = 0.25 + 0.085 * max(len(name) for name in names)
-            figure = new_figure(WIDTH, 1.35 + 0.26 * max(count, 3), left=margin, bottom=0.85)
-            ax = figure.subplots()
-            _labelled(ax, bands, points, names, colour)
-            axis: Axis = ax.xaxis
-            ax.set_xlabel(label)
-            if scale.logarithmic:
-                ax.set_xscale("log")
-        else:
-            figure = new_figure(WIDTH, 3.6, left=0.75, bottom=0.85)
-            ax = figure.subplots()
-            _dense(ax, bands, points, colour)
-            axis = ax.yaxis
-            ax.set_ylabel(label)
-            ax.set_xlabel(f"{count} rows of data, ordered by prediction")
-            if scale.logarithmic:
-                ax.set_yscale("log")
-        low, high = ax.get_xlim() if axis is ax.xaxis else ax.get_ylim()
-        if high > low:
-            ticks(axis, scale, low, high, most=5)
-        key_below(figure, ax, 3)
-        set_title(figure, fit, title)
-    return figure
+    if count <= MOST_LABELLED:
+        _labelled(ax, bands, points, [_shortened(row) for row in rows], colour)
+        axis: Axis = ax.xaxis
+        ax.set_xlabel(label)
+        if scale.logarithmic:
+            ax.set_xscale("log")
+    else:
+        _dense(ax, bands, points, colour)
+        axis = ax.yaxis
+        ax.set_ylabel(label)
+        ax.set_xlabel(f"{count} rows of data, ordered by prediction")
+        if scale.logarithmic:
+            ax.set_yscale("log")
+    low, high = ax.get_xlim() if axis is ax.xaxis else ax.get_ylim()
+    if high > low:
+        ticks(axis, scale, low, high, most=5)
 
 
 def _shortened(name: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -92,7 +93,9 @@ def _setup(problem: Problem) -> tuple[str, ...]:
     if problem.dataset is not None:
         rows = problem.conditions.n_rows
         said.append(
-            f"{rows} rows of {problem.dataset.key}: {problem.observable}, noise {problem.spec.noise}."
+            f"{rows} {'row' if rows == 1 else 'rows'} of {problem.dataset.key}: "
+            + "; ".join(f"{o.name}, noise {o.noise.name}" for o in problem.observations)
+            + "."
         )
         if free > rows:
             said.append(
@@ -142,7 +145,8 @@ def _predictions(problem: Problem, draws: FloatArray) -> tuple[tuple[str, ...], 
 
 
 def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
-    entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in NOISE_PARAMETERS]
+    scatter = (*NOISE_PARAMETERS, "group_scale")
+    entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
     if not entering:
         return None
     centre = problem.prior_medians()
@@ -152,35 +156,59 @@ def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
         vectors[:, entering] = theta
         return vectors
 
-    typical = problem.predict(centre)[problem.observable]
-    logarithmic = bool((typical > 0).all() and (problem.predict(draws)[problem.observable] > 0).all())
+    typical = problem.predict_data(centre)
+    logarithmic = (typical > 0) & (problem.predict_data(draws) > 0).all(axis=0)
+    # what scatters is taken on the scale of the predictions
+    scale = np.where(logarithmic & ~problem.noise_is_logarithmic, 1 / typical, 1.0)
+    whiten, width = _whitening(problem, centre, scale)
 
     def predict(theta: FloatArray) -> FloatArray:
-        predicted = problem.predict(full(theta))[problem.observable]
+        predicted = problem.predict_data(full(theta))
         with np.errstate(all="ignore"):
-            return np.log(predicted) if logarithmic else predicted
+            return whiten(np.where(logarithmic, np.log(predicted), predicted))
 
     def derived(theta: FloatArray) -> dict[str, FloatArray]:
         # the quantity of each parameter vector; a block that the parameters leave alone comes once for all
         found = problem.forward.derived(problem.inputs(full(theta)), problem.tables)
         shape = (len(theta), problem.conditions.n_rows)
-        return {name: np.array(np.broadcast_to(found[name], shape)) for name in problem.forward.blocks}
+        repeats = len(problem.observations)
+        return {
+            name: np.tile(np.broadcast_to(found[name], shape), repeats) for name in problem.forward.blocks
+        }
 
-    width = problem.noise_width(centre)
     return identify(
         [problem.names[i] for i in entering],
         predict,
         draws[:, entering],
-        width / typical if logarithmic and not problem.noise_is_logarithmic else width,
+        width,
         groups=_groups(problem),
         derived=derived,
     )
 
 
+def _whitening(
+    problem: Problem, centre: FloatArray, scale: FloatArray
+) -> tuple[Callable[[FloatArray], FloatArray], FloatArray]:
+    """Map of predictions to ones that scatter independently, and the width of that scatter.
+
+    Group effects make data scatter together; what only shifts a whole group is then not taken for information.
+    """
+    if problem.groups is None:
+        return lambda values: values, problem.noise_width(centre) * scale
+    covariance = problem.scatter_covariance(centre) * np.outer(scale, scale)
+    inverse = np.linalg.inv(np.linalg.cholesky(covariance))
+    return lambda values: values @ inverse.T, np.ones(len(scale))
+
+
 def _groups(problem: Problem) -> dict[str, NDArray[np.intp]]:
     groups: dict[str, NDArray[np.intp]] = {}
+    if problem.groups is not None:  # rows scatter together, so that none of them stands by itself
+        return groups
+    several, rows = len(problem.observations), problem.conditions.n_rows
+    if several > 1:
+        groups |= {o.name: np.arange(rows) + i * rows for i, o in enumerate(problem.observations)}
     for values in problem.conditions.labels.values():
         levels = list(dict.fromkeys(values))
         if 2 <= len(levels) <= MOST_LEVELS:
-            groups |= {str(level): np.flatnonzero(values == level) for level in levels}
+            groups |= {str(level): np.flatnonzero(np.tile(values == level, several)) for level in levels}
     return groups

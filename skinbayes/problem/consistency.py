@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
 from skinbayes.problem.inputs import Conditions
+from skinbayes.problem.observations import Observation
 from skinbayes.roughness import PowerSpectrum
 from skinbayes.vocabulary import LABELS, QUANTITIES, suggestions
 
@@ -61,6 +64,21 @@ def check_required(
             f"{spec.path}: the roughness is incomplete: {', '.join(missing)} missing; name a surface in [surface], or give "
             "all five roughness parameters"
         )
+
+
+def check_scatter(spec: ModelSpec, observations: Sequence[Observation]) -> None:
+    """Refuse data that may not scatter at all: no noise, no known spread and no discrepancy."""
+    for observation in observations:
+        scatter = [
+            p
+            for p in spec.noise_parameters
+            if p.name in ("noise_scale", "discrepancy_scale") and p.level in (None, observation.name)
+        ]
+        if not (observation.spread > 0).all() and scatter and all(p.value == 0 for p in scatter):
+            raise InputError(
+                f"{spec.path}: noise: noise_scale is 0 and {observation.name} has data without a known spread, so that they "
+                'could not differ from the prediction; give a noise_scale > 0, or spread = "use" with a spread for every row'
+            )
 
 
 def check_derived(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.vocabulary import LABELS
 
 
 @dataclass(frozen=True)
@@ -23,15 +24,18 @@ class Conditions:
     values : quantity to SI values, each of shape ``(n_rows,)``
     labels : grouping column to text values, each of shape ``(n_rows,)``
     n_rows : number of rows
+    covariates : further columns that act on inputs or observables, each of shape ``(n_rows,)``, SI
     """
 
     values: Mapping[str, FloatArray]
     labels: Mapping[str, NDArray[np.str_]]
     n_rows: int
+    covariates: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def without(self, names: Collection[str]) -> Conditions:
         """The same rows without some of the quantities."""
-        return Conditions({k: v for k, v in self.values.items() if k not in names}, self.labels, self.n_rows)
+        kept = {k: v for k, v in self.values.items() if k not in names}
+        return Conditions(kept, self.labels, self.n_rows, self.covariates)
 
     def matching(self, wanted: Mapping[str, Collection[str]]) -> NDArray[np.bool_]:
         """Which rows have one of the wanted levels in each of the named grouping columns, shape ``(n_rows,)``."""
@@ -92,16 +96,20 @@ def plan_inputs(
         A parameter has values for each level of a grouping column that the rows lack, or a row has a level without value.
     """
     by_name: dict[str, list[tuple[ParameterSpec, int]]] = {}
-    for spec in fixed:
-        by_name.setdefault(spec.name, []).append((spec, -1))
-    for position, spec in enumerate(free):
-        by_name.setdefault(spec.name, []).append((spec, position))
+    positions = [(spec, -1) for spec in fixed] + [(spec, position) for position, spec in enumerate(free)]
+    for spec, position in positions:
+        by_name.setdefault(_input_name(spec), []).append((spec, position))
     return tuple(_plan_one(name, entries, conditions) for name, entries in by_name.items())
+
+
+def _input_name(spec: ParameterSpec) -> str:
+    """Parameters that differ by a column of the rows are one input, those that differ by something else are several."""
+    return spec.name if spec.by is None or spec.by in LABELS else spec.label
 
 
 def _plan_one(name: str, entries: list[tuple[ParameterSpec, int]], conditions: Conditions) -> InputPlan:
     column = entries[0][0].by
-    if column is None:
+    if column is None or column not in LABELS:
         (spec, position), *_ = entries
         value = np.nan if spec.value is None else spec.value
         return InputPlan(name, np.array([position]), np.array([value]))

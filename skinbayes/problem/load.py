@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, Tables, forward_model
-from skinbayes.problem.consistency import check_derived, check_names, check_required
+from skinbayes.forward import ROUGHNESS_INPUTS, Tables, forward_model
+from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
+from skinbayes.problem.covariates import check_covariates
 from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, plan_inputs
+from skinbayes.problem.observations import Observation
 from skinbayes.problem.problem import Problem
+from skinbayes.problem.rheology import REPLACED, flow_curves_of, load_flow_curves
+from skinbayes.problem.rows import crossed_groups, data_rows, default_rows, relative_input_spread, user_rows
 from skinbayes.problem.settings import apply_settings
 from skinbayes.roughness import TabulatedSpectrum, named_surface
-from skinbayes.statistics.noise import noise_family
-from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import QUANTITIES
 
 
 def load_problem(
@@ -28,6 +31,7 @@ def load_problem(
     data: str | Path | None = None,
     settings: Mapping[str, str] | None = None,
     conditions: str | Path | None = None,
+    rheology: str | Path | None = None,
 ) -> Problem:
     """Bind a model to its data.
 
@@ -38,6 +42,7 @@ def load_problem(
     settings : values to fix, as text with unit: ``{"yield_stress": "40 MPa", "surface": "paper_printed"}``;
         ``name[level]`` fixes one level of a parameter that differs by group
     conditions : a CSV of rows to predict instead of the data's; such a problem has no likelihood
+    rheology : a CSV of flow curves (or a data set) to use instead of the one named in the model file
 
     Returns
     -------
@@ -54,27 +59,37 @@ def load_problem(
     0
     """
     spec = load_model(name)
+    if rheology is not None:
+        spec = replace(spec, rheology=str(rheology))
     forward = forward_model(spec.forward, f"{spec.path}: forward")
-    rows = None if conditions is None else _user_rows(spec, forward, conditions)
+    rows = None if conditions is None else user_rows(spec, forward, conditions)
     parameters, surface, taken = apply_settings(
         spec, forward, settings or {}, () if rows is None else rows.values
     )
     table, surface_file, roughness = _surface(spec, surface)
-    dataset, observed, spread = None, None, None
+    dataset: Dataset | None = None
+    observations: tuple[Observation, ...] = ()
+    curves = load_flow_curves(spec, forward)
+    taken |= {REPLACED} if curves else set()
     if rows is not None:
         bound = rows.without(taken)
-    elif spec.observable is None:
+    elif not spec.observables:
         if data is not None:
             raise InputError(f"{spec.path}: the model has no [data] block, so data cannot be given to it")
-        bound = _default_rows(spec, taken)
+        bound = default_rows(spec, taken)
     else:
         dataset = _dataset(spec, data)
-        bound, observed, spread = _data_rows(spec, forward, dataset, taken)
+        bound, observations = data_rows(spec, forward, dataset, taken)
     given = {p.name for p in parameters} | set(bound.values)
+    if curves and REPLACED in given:
+        raise InputError(
+            f"{spec.path}: '{REPLACED}' is given twice: as a parameter and by [rheology]; drop one"
+        )
     parameters += [p for p in roughness if p.name not in given]
     check_names(spec, forward, parameters, bound)
     given |= {p.name for p in parameters}
-    check_required(spec, forward, given, table)
+    check_covariates(spec, forward)
+    check_required(spec, forward, given | ({REPLACED} if curves else set()), table)
     for key, value in forward.optional.items():
         if key not in given:
             parameters.append(
@@ -89,16 +104,17 @@ def load_problem(
                     f"default of {forward.name}",
                 )
             )
-    parameters += spec.noise_parameters
+    parameters += (*spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
     free = tuple(p for p in parameters if p.prior is not None)
     fixed = tuple(p for p in parameters if p.prior is None)
+    check_scatter(spec, observations)
     check_derived(spec, forward, parameters, bound, whole_data=dataset is not None and data is None)
     try:
         plan = plan_inputs(fixed, free, bound)
     except InputError as error:
         raise InputError(f"{spec.path}: {error}") from None
-    tables = Tables(table)
-    data_digest = digest_data(spec, dataset, observed, spread)
+    tables = Tables(table, flow_curves_of(curves, spec.rheology_by, bound, spec.path))
+    data_digest = digest_data(dataset, observations)
     problem = Problem(
         spec=spec,
         forward=forward,
@@ -106,10 +122,12 @@ def load_problem(
         fixed=fixed,
         conditions=bound,
         dataset=dataset,
-        observed=observed,
-        observed_spread=spread,
+        observations=observations,
+        input_spread={} if dataset is None else relative_input_spread(spec, dataset, bound),
+        groups=crossed_groups(spec, bound) if observations else None,
         tables=tables,
-        fingerprint=digest_model(spec, free, fixed, table, data_digest),
+        flow_curves=curves,
+        fingerprint=digest_model(spec, free, fixed, tables, data_digest),
         data_fingerprint=data_digest,
         _plan=plan,
         settings=dict(settings or {}),
@@ -175,55 +193,3 @@ def _columns(dataset: Dataset, names: set[str]) -> Conditions:
         key: column.astype(np.str_) for key, column in dataset.columns.items() if column.dtype.kind == "U"
     }
     return Conditions(values, labels, dataset.n_rows)
-
-
-def _user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Conditions:
-    rows = _columns(load_dataset(path), set(forward.input_names()))
-    if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
-        raise InputError(
-            f"{path}: none of its columns is an input of '{forward.name}', which takes {', '.join(forward.input_names())}"
-        )
-    return rows
-
-
-def _default_rows(spec: ModelSpec, taken: set[str]) -> Conditions:
-    grids = {key: values for key, values in spec.conditions.items() if key not in taken}
-    lengths = {len(values) for values in grids.values()}
-    if len(lengths) > 1:
-        raise InputError(f"{spec.path}: conditions have different lengths: {sorted(lengths)}")
-    return Conditions(grids, {}, lengths.pop() if lengths else 1)
-
-
-def _data_rows(
-    spec: ModelSpec, forward: ForwardModel, dataset: Dataset, taken: set[str]
-) -> tuple[Conditions, FloatArray, FloatArray]:
-    observable = spec.observable or ""
-    if observable not in forward.observables:
-        raise InputError(
-            f"{spec.path}: data.observable '{observable}' is not predicted by '{forward.name}'; "
-            f"expected one of {', '.join(forward.observables)}"
-        )
-    if observable not in dataset.columns:
-        raise InputError(
-            f"{dataset.path}: no column '{observable} [..]', which the model '{spec.name}' explains"
-        )
-    rows = _columns(dataset, set(forward.input_names()) - taken)
-    observed = np.asarray(dataset.columns[observable], dtype=float)
-    spread_column = observable + STANDARD_DEVIATION_SUFFIX
-    spread = np.zeros_like(observed)
-    if spread_column in dataset.columns and spec.spread is None:
-        raise InputError(
-            f"{spec.path}: the data have a column '{spread_column}'; say in [data] whether it enters the likelihood: "
-            'spread = "use" or spread = "ignore"'
-        )
-    try:
-        noise_family(str(spec.noise)).check_observed(observed)
-    except InputError as error:
-        raise InputError(f"{dataset.path}: {observable}: {error}") from None
-    if spec.spread == "use":
-        if spread_column not in dataset.columns:
-            raise InputError(
-                f"{spec.path}: data.spread = \"use\", but {dataset.path} has no column '{spread_column}'"
-            )
-        spread = np.asarray(dataset.columns[spread_column], dtype=float)
-    return rows, observed, spread

@@ -21,6 +21,7 @@ class PredictedRow:
     """One datum and the prior predictive distribution at its conditions, SI; ``share_below`` of the draws lie below it."""
 
     label: str
+    observable: str
     observed: float
     q05: float
     median: float
@@ -34,14 +35,15 @@ class PriorPredictive:
 
     Attributes
     ----------
-    model, observable : names
+    model : name
+    observables : what was observed
     rows : one entry for each datum
     draws : number of prior draws
     failed : draws for which the forward model gave no finite prediction
     """
 
     model: str
-    observable: str
+    observables: tuple[str, ...]
     rows: tuple[PredictedRow, ...]
     draws: int
     failed: int
@@ -84,17 +86,18 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     InputError
         The model has no data, or no prior draw gives a finite prediction.
     """
-    observable = problem.observable
+    observables = problem.observables
     rng = np.random.default_rng([seed, 2])
     simulated = problem.simulate(problem.draw_prior(rng, draws), rng)
     usable = simulated[np.isfinite(simulated).all(axis=1)]
     if len(usable) == 0:
-        raise InputError(f"{problem.spec.path}: no prior draw gives a finite {observable}")
+        raise InputError(f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}")
     quantiles = np.quantile(usable, [0.05, 0.5, 0.95], axis=0)
     observed = np.asarray(problem.observed)
     below = (usable < observed).mean(axis=0)
+    names = np.repeat(observables, problem.conditions.n_rows).tolist()
     rows = tuple(
-        PredictedRow(label, *(float(v) for v in (observed[i], *quantiles[:, i], below[i])))
-        for i, label in enumerate(problem.conditions.row_labels())
+        PredictedRow(label, name, *(float(v) for v in (observed[i], *quantiles[:, i], below[i])))
+        for i, (label, name) in enumerate(zip(problem.datum_labels(), names, strict=True))
     )
-    return PriorPredictive(problem.name, observable, rows, draws, draws - len(usable))
+    return PriorPredictive(problem.name, observables, rows, draws, draws - len(usable))

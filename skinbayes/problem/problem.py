@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import ForwardModel, Profile, Tables
+from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
+from skinbayes.forward.base import Progress
+from skinbayes.problem.covariates import apply_covariates, factor_key
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
+from skinbayes.problem.likelihood import Likelihood
+from skinbayes.problem.observations import Observation
+from skinbayes.problem.ranges import input_ranges
+from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
-from skinbayes.statistics.noise import NoiseFamily, noise_family
+from skinbayes.statistics.groups import CrossedGroups
 
 if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
     from skinbayes.problem.target import PosteriorTarget
-
-_NOISE_WORDS = {
-    "noise_scale": "scale",
-    "discrepancy_scale": "discrepancy",
-    "degrees_of_freedom": "degrees_of_freedom",
-}
-"""Parameters of ``[noise]`` and what the noise families call them."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +47,12 @@ class Problem:
     free, fixed : parameters with a prior, and parameters with a value
     conditions : the rows of the data set (or the default conditions of a model without data)
     dataset : the data set after row selection, or None
-    observed : observed values, shape ``(N,)``, SI; None without data
-    observed_spread : known standard deviation of each datum, shape ``(N,)``, zero if not used
+    observations : what was observed, each at all rows; empty without data
+    input_spread : inputs to their known standard deviation over their value, shape ``(N,)``, if that is to be used
+    groups : group effects that are integrated out, or None
     tables : tabulated roughness spectrum and flow curves of the rows, where there are any
     fingerprint : digest of everything the posterior depends on
+    flow_curves : flow curve of each liquid, empty without ``[rheology]``
     data_fingerprint : digest of the data alone
     settings : values set over the model file, as given
     surface_file : file of the tabulated spectrum, or None
@@ -61,9 +64,11 @@ class Problem:
     fixed: tuple[ParameterSpec, ...]
     conditions: Conditions
     dataset: Dataset | None
-    observed: FloatArray | None
-    observed_spread: FloatArray | None
+    observations: tuple[Observation, ...]
+    input_spread: Mapping[str, FloatArray]
+    groups: CrossedGroups | None
     tables: Tables
+    flow_curves: Mapping[str, FlowCurve]
     fingerprint: str
     data_fingerprint: str
     _plan: tuple[InputPlan, ...]
@@ -86,13 +91,50 @@ class Problem:
         return len(self.free)
 
     @property
-    def observable(self) -> str:
-        """The observable that the data hold."""
-        if self.spec.observable is None:
+    def observables(self) -> tuple[str, ...]:
+        """The observables that the data hold.
+
+        Raises :class:`InputError` if the model has no data.
+        """
+        if not self.observations:
             raise InputError(
                 f"{self.spec.path}: the model '{self.name}' has no data; it serves 'predict' only"
             )
-        return self.spec.observable
+        return tuple(observation.name for observation in self.observations)
+
+    @property
+    def observed(self) -> FloatArray | None:
+        """All data, one observable after the other, shape ``(M,)``, SI; None without data."""
+        if not self.observations:
+            return None
+        return np.concatenate([observation.values for observation in self.observations])
+
+    def datum_labels(self) -> list[str]:
+        """A short name for each datum: its row, its observable, or both."""
+        rows = self.conditions.row_labels()
+        if len(self.observations) < 2:
+            return rows
+        if len(rows) == 1:
+            return list(self.observables)
+        return [f"{name}, {row}" for name in self.observables for row in rows]
+
+    @cached_property
+    def model(self) -> ForwardModel:
+        """The forward model as it is evaluated: prepared for the ranges of the priors if it can be and there are any."""
+        return self.prepare()
+
+    def prepare(self, progress: Progress | None = None) -> ForwardModel:
+        """Build what the forward model wants to have ready before many evaluations, such as a table; once.
+
+        ``progress`` is called with steps done and their total. Without data or free parameters nothing is built.
+        """
+        if "model" in self.__dict__:
+            return self.model
+        prepared = self.forward
+        if prepared.prepare is not None and self.observations and self.free:
+            prepared = prepared.prepare(input_ranges(self), self.tables, progress)
+        self.__dict__["model"] = prepared
+        return prepared
 
     # -- densities ---------------------------------------------------------------------------------------------------
 
@@ -102,9 +144,10 @@ class Problem:
         return _unbatch(self.prior_density()(batch), single)
 
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
-        """Log-likelihood of the data, shape ``(B,)``; ``pointwise=True`` gives ``(B, N)``.
+        """Log-likelihood of the data, shape ``(B,)``; ``pointwise=True`` gives ``(B, M)``, one for each datum.
 
-        NaN and +inf from the forward model become −inf.
+        With group effects the pointwise terms are ln p(datum | all others, θ), which is what leaving one out needs; they do
+        not sum to the whole. NaN and +inf from the forward model become −inf.
 
         Raises
         ------
@@ -112,8 +155,21 @@ class Problem:
             The model has no data, or ``theta`` has the wrong number of parameters.
         """
         batch, single = self._batch(theta)
-        value = self._pointwise(batch) if pointwise else self._log_likelihood(batch)
+        value = self._likelihood.pointwise(batch) if pointwise else self._likelihood.total(batch)
         return _unbatch(_impossible(value), single)
+
+    def log_likelihood_left_out(self, theta: ArrayLike, column: str) -> FloatArray:
+        """ln p(all data of one level | all other data, θ) for each level of a grouping column, shape ``(B, levels)``.
+
+        What leaving out one person, or one liquid, needs. Levels in the order of their first row.
+
+        Raises
+        ------
+        InputError
+            The model has no data, several observables, or no such column.
+        """
+        batch, single = self._batch(theta)
+        return _unbatch(_impossible(self._likelihood.left_out(batch, column)), single)
 
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
         """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
@@ -134,7 +190,7 @@ class Problem:
 
     def data_likelihood(self) -> LogLikelihood:
         """The likelihood: it stays as it is when coordinates change; NaN where the forward model has no answer."""
-        return LogLikelihood(self._log_likelihood)
+        return LogLikelihood(self._likelihood.total)
 
     # -- predictions -------------------------------------------------------------------------------------------------
 
@@ -149,17 +205,26 @@ class Problem:
         Returns
         -------
         dict
-            Observable to predictions, ``(N,)`` or ``(B, N)``, SI. The observable of the data includes the model's
-            discrepancy factor, if it has one.
+            Observable to predictions, ``(N,)`` or ``(B, N)``, SI. Observables of the data include the model's discrepancy
+            factor and covariates that act on them. Effects of groups are those of the median group, 0.
         """
         batch, single = self._batch(theta)
         rows = conditions or self.conditions
-        predicted = self._evaluate(self.inputs(batch, conditions))
+        tables = self.tables
+        if conditions is not None:
+            curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, conditions, self.spec.path)
+            tables = replace(tables, flow_curves=curves)
+        predicted = self.evaluate(self.inputs(batch, conditions), tables)
         shape = (batch.shape[0], rows.n_rows)
         return {
             name: _unbatch(np.array(np.broadcast_to(value, shape)), single)
             for name, value in predicted.items()
         }
+
+    def predict_data(self, theta: ArrayLike) -> FloatArray:
+        """Predictions of all data, one observable after the other, shape ``(M,)`` or ``(B, M)``, SI."""
+        predicted = self.predict(theta)
+        return np.concatenate([predicted[name] for name in self.observables], axis=-1)
 
     def derived(self, theta: ArrayLike) -> dict[str, FloatArray]:
         """Quantities between inputs and observables at the problem's rows, and the products named in the model file.
@@ -173,7 +238,7 @@ class Problem:
         batch, _ = self._batch(theta)
         inputs = self.inputs(batch)
         with np.errstate(all="ignore"):
-            quantities = dict(self.forward.derived(inputs, self.tables))
+            quantities = dict(self.model.derived(inputs, self.tables))
             known = inputs | quantities
             for name, block in self.spec.derived.items():
                 product = np.ones((1, 1))
@@ -193,12 +258,33 @@ class Problem:
         with np.errstate(all="ignore"):
             return self.forward.explain(self.inputs(batch), self.tables)
 
-    def simulate(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
-        """Draw data of the size of the observed ones for each parameter vector, noise included; ``(N,)`` or ``(B, N)``."""
+    def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
+        """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
+        batch, _ = self._batch(theta)
+        if self.model.flags is None:
+            return {}
+        with np.errstate(all="ignore"):
+            found = self.model.flags(self.inputs(batch), self.tables)
+        shape = (len(batch), self.conditions.n_rows)
+        return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
+
+    def simulate(
+        self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
+    ) -> FloatArray:
+        """Draw data of the size of the observed ones for each parameter vector, noise included; ``(M,)`` or ``(B, M)``.
+
+        Group effects are drawn anew, for other people and liquids, unless ``effects`` ``(B, G)`` are given.
+        """
         batch, single = self._batch(theta)
-        predicted = self.predict(batch)[self.observable]
-        arguments = self._noise_arguments(self.inputs(batch))
-        return _unbatch(self._noise.draw(rng, predicted, observed=self.observed, **arguments), single)
+        return _unbatch(self._likelihood.draw(batch, rng, effects), single)
+
+    def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
+        """Draw the effects of all levels of all groups given parameters and data, shape ``(B, G)``.
+
+        Raises :class:`InputError` if the model has no groups.
+        """
+        batch, _ = self._batch(theta)
+        return self._likelihood.draw_effects(batch, rng)
 
     def profile(self, profile: Profile, theta: FloatArray, row: int = 0) -> tuple[FloatArray, FloatArray]:
         """A curve of the forward model at the conditions of one row: abscissa ``(K,)`` and ordinate ``(B, K)``."""
@@ -208,9 +294,10 @@ class Problem:
             )
             for name, value in self.inputs(theta).items()
         }
+        tables = self.tables.at_row(row)
         with np.errstate(all="ignore"):
-            grid = profile.grid(inputs, self.tables)
-            curve = profile.evaluate(inputs, self.tables, grid)
+            grid = profile.grid(inputs, tables)
+            curve = profile.evaluate(inputs, tables, grid)
         return grid, np.array(np.broadcast_to(curve, (len(theta), len(grid))))
 
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
@@ -218,7 +305,8 @@ class Problem:
         rows = conditions or self.conditions
         plan = self._plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
         values = {entry.name: entry.values(theta) for entry in plan if entry.name not in rows.values}
-        return values | {name: column[np.newaxis, :] for name, column in rows.values.items()}
+        values |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
+        return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
 
     # -- prior draws, checks, sampling -------------------------------------------------------------------------------
 
@@ -243,26 +331,39 @@ class Problem:
         return PosteriorTarget(self)
 
     def noise_width(self, theta: FloatArray) -> FloatArray:
-        """Width of the noise of each row at one parameter vector ``(D,)``, shape ``(N,)``.
+        """Width of the noise of each datum at one parameter vector ``(D,)``, shape ``(M,)``.
 
-        In the unit of the observable; for logarithmic noise families the width of its ln.
+        In the unit of the observable; for logarithmic noise families the width of its ln. Group effects are not in it.
         """
         batch, _ = self._batch(theta)
-        arguments = self._noise_arguments(self.inputs(batch))
-        arguments.pop("degrees_of_freedom", None)
-        width = self._noise.width(self.predict(batch)[self.observable], observed=self.observed, **arguments)
-        return np.array(np.broadcast_to(width, (1, self.conditions.n_rows))[0])
+        return self._likelihood.width(batch)[0]
+
+    def scatter_covariance(self, theta: FloatArray) -> FloatArray:
+        """Covariance of what scatters, group effects included, at one parameter vector ``(D,)``, shape ``(M, M)``."""
+        return self._likelihood.covariance(theta)
 
     @property
-    def noise_is_logarithmic(self) -> bool:
-        """Whether it is ln of the observable that scatters."""
-        return self._noise.logarithmic
+    def noise_is_logarithmic(self) -> NDArray[np.bool_]:
+        """Whether it is ln of a datum that scatters, for each datum, shape ``(M,)``."""
+        return np.repeat([o.noise.logarithmic for o in self.observations], self.conditions.n_rows)
+
+    def evaluate(
+        self, inputs: Mapping[str, FloatArray], tables: Tables | None = None
+    ) -> dict[str, FloatArray]:
+        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them."""
+        with np.errstate(all="ignore"):
+            predicted = dict(self.model.evaluate(inputs, self.tables if tables is None else tables))
+        for name in self.spec.observables:
+            for key in ("discrepancy_factor", f"discrepancy_factor[{name}]", factor_key(name)):
+                if key in inputs:
+                    predicted[name] = predicted[name] * inputs[key]
+        return predicted
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 
-    @property
-    def _noise(self) -> NoiseFamily:
-        return noise_family(str(self.spec.noise))
+    @cached_property
+    def _likelihood(self) -> Likelihood:
+        return Likelihood(self)
 
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
         array = np.asarray(theta, dtype=float)
@@ -271,34 +372,6 @@ class Problem:
                 f"theta has shape {array.shape}; expected ({self.dimension},) or (B, {self.dimension}): {', '.join(self.names)}"
             )
         return (array[np.newaxis, :], True) if array.ndim == 1 else (array, False)
-
-    def _log_likelihood(self, theta: FloatArray) -> FloatArray:
-        return self._pointwise(theta).sum(axis=-1)
-
-    def _pointwise(self, theta: FloatArray) -> FloatArray:
-        if self.observed is None:
-            raise InputError(f"{self.spec.path}: '{self.name}' has no data here, so there is no likelihood")
-        inputs = self.inputs(theta)
-        predicted = np.broadcast_to(
-            self._evaluate(inputs)[self.observable], (len(theta), self.conditions.n_rows)
-        )
-        density = self._noise.log_density(self.observed, predicted, **self._noise_arguments(inputs))
-        # NaN where the forward model has no answer: samplers count those apart from data that are impossible
-        return np.where(np.isnan(predicted), np.nan, density)
-
-    def _evaluate(self, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        """The forward model with the discrepancy factor, if there is one; shapes as the forward model gives them."""
-        with np.errstate(all="ignore"):
-            predicted = self.forward.evaluate(inputs, self.tables)
-        if "discrepancy_factor" in inputs:
-            predicted[self.observable] = predicted[self.observable] * inputs["discrepancy_factor"]
-        return predicted
-
-    def _noise_arguments(self, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        arguments = {_NOISE_WORDS[name]: inputs[name] for name in _NOISE_WORDS if name in inputs}
-        if self.observed_spread is not None:
-            arguments["spread"] = self.observed_spread
-        return arguments
 
 
 def _unbatch(values: FloatArray, single: bool) -> FloatArray:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.errors import InputError
+from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report import quality, sentences, tables
 from skinbayes.report.figures import pictures
@@ -106,13 +107,16 @@ def context(fit: Fit) -> dict[str, Any]:
 
 
 def _setting(fit: Fit) -> str:
-    observable = str(fit.provenance["observable"])
-    known = lookup(observable)
-    symbol = f" {known.symbol}" if known else ""
-    count = fit.groups["observed_data"].sizes["row"]
+    described = []
+    for observable in observables(fit):
+        known = lookup(observable)
+        described.append(f"{spoken_name(observable)}{f' {known.symbol}' if known else ''}")
+    count = len(observed_values(fit))
     values = "1 value" if count == 1 else f"{count} values"
     parameters = "1 parameter" if len(fit.names) == 1 else f"{len(fit.names)} parameters"
-    return f"{values} of the {spoken_name(observable)}{symbol} informed {parameters}."
+    *most, last = described
+    listed = f"{', '.join(most)} and the {last}" if most else last
+    return f"{values} of the {listed} informed {parameters}."
 
 
 def _combinations(fit: Fit, check: CheckReport | None) -> tuple[list[str], list[str]]:
@@ -128,10 +132,11 @@ def _combinations(fit: Fit, check: CheckReport | None) -> tuple[list[str], list[
 
 
 def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
-    data, free = fit.groups["observed_data"].sizes["row"], len(fit.names)
-    said = [
-        f"Scatter of the data about the model: {str(fit.provenance['noise']).replace('_', ' ')} distribution."
-    ]
+    data, free = len(observed_values(fit)), len(fit.names)
+    families = {str(family).replace("_", " ") for family in fit.provenance["noise"].values()}
+    said = [f"Scatter of the data about the model: {' or '.join(sorted(families))} distribution."]
+    if accuracy := fit.provenance.get("accuracy"):
+        said.append(str(accuracy))
     if free > data:
         said.append(
             f"There are more free parameters ({free}) than data ({data}): the priors decide what remains open."

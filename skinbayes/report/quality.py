@@ -8,7 +8,13 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.numbers import number, percent
-from skinbayes.plot.predictive import observed_values, predictive_draws, predictive_quantiles, row_names
+from skinbayes.plot.predictive import (
+    datum_names,
+    observables,
+    observed_values,
+    predictive_draws,
+    predictive_quantiles,
+)
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -42,7 +48,7 @@ def agreement(fit: Fit) -> list[str]:
     tails = np.minimum(share, 1.0 - share)
     far = [i for i in np.argsort(tails) if tails[i] < SURPRISING]
     if far:
-        names = row_names(fit)
+        names = datum_names(fit)
         listed = ", ".join(names[i] for i in far[:MOST_NAMED])
         more = f" and {len(far) - MOST_NAMED} more" if len(far) > MOST_NAMED else ""
         said.append(
@@ -51,12 +57,12 @@ def agreement(fit: Fit) -> list[str]:
         )
     else:
         said.append("No single row lies where the fitted model would hardly ever put it.")
-    if count >= FEW:
+    if count >= FEW and len(observables(fit)) == 1:
         said += [
             _statistic("mean", draws.mean(axis=1), float(observed.mean())),
             _statistic("scatter between rows", draws.std(axis=1, ddof=1), float(observed.std(ddof=1))),
         ]
-    else:
+    elif count < FEW:
         said.append(
             f"With {count} {'datum' if count == 1 else 'data'} such agreement is weak evidence: almost any model with as "
             "many parameters would show it."

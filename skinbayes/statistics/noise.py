@@ -74,6 +74,29 @@ class NoiseFamily:
         """True if the family has ``degrees_of_freedom``."""
         return "degrees_of_freedom" in self.parameters
 
+    @property
+    def closed_form_groups(self) -> bool:
+        """True if effects that groups of data share can be integrated out: normal, with a width that f does not set."""
+        return not self.heavy_tailed and (self.logarithmic or not self.relative)
+
+    def residual(self, observed: ArrayLike, predicted: ArrayLike) -> FloatArray:
+        """What scatters: y − f, or ln y − ln f in the logarithmic families; NaN where that is not defined.
+
+        Parameters
+        ----------
+        observed : data y, shape ``(N,)``, unit of the observable
+        predicted : prediction f, shape ``(B, N)``, unit of the observable
+
+        Returns
+        -------
+        r, shape ``(B, N)``: unit of the observable, or dimensionless for the logarithmic families
+        """
+        y, f = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
+        if not self.logarithmic:
+            return y - f
+        with np.errstate(all="ignore"):
+            return np.where((f > 0.0) & (y > 0.0), np.log(y) - np.log(f), np.nan)
+
     def width(
         self,
         predicted: ArrayLike,

@@ -48,6 +48,9 @@ SECTION_OF = {
     modelschema.SurfaceBlock: "`[surface]`",
     modelschema.DerivedBlock: "`[derived.NAME]`",
     modelschema.GridBlock: "`[conditions]`",
+    modelschema.GroupBlock: "`[groups.COLUMN]`",
+    modelschema.CovariateBlock: "`[covariates.NAME]`",
+    modelschema.RheologyBlock: "`[rheology]`",
 }
 
 
@@ -105,7 +108,19 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
     }
     for block in SECTION_OF:
         known |= set(block.model_fields)
-    known |= {"by", "family", "fixed", "source", "models", "check", "prior", "fit", "predict", "normal"}
+    known |= {
+        "by",
+        "family",
+        "fixed",
+        "source",
+        "models",
+        "check",
+        "prior",
+        "fit",
+        "predict",
+        "normal",
+        "person_effect",
+    }
     words = set(re.findall(r"`([a-z][a-z_-]+)`", PAGE))
     assert words <= known, sorted(words - known)
 
@@ -143,6 +158,10 @@ data = { dataset = "adams2007-forearm-glass", observable = "friction_coefficient
 noise = { family = "lognormal", noise_scale = 0.1 }
 """
     example = tomllib.loads(block)
+    if "data" in example:  # has its own test below
+        return
+    if "groups" in example or "covariates" in example:
+        data = data.replace("adams2007-forearm-glass", "fehlberg2025-finger-stribeck")
     grid = "conditions" in example
     text = base.replace("FORWARD", "contact-area" if grid else "friction").replace(
         "DATA", "" if grid else data
@@ -157,3 +176,20 @@ noise = { family = "lognormal", noise_scale = 0.1 }
     (tmp_path / "example.toml").write_text("\n".join(lines) + "\n" + added, encoding="utf-8")
     problem = sb.load_problem(tmp_path / "example.toml")
     assert len(problem.predict(problem.prior_medians())) > 0
+
+
+def test_the_example_of_several_observables(tmp_path: Path) -> None:
+    (block,) = [block for block in BLOCKS if "observables" in block]
+    (tmp_path / "summary.csv").write_text(
+        "wet_plateau [1],wet_plateau_standard_deviation [1],peak_width [s],peak_width_standard_deviation [s]\n"
+        "1.3,0.1,80,20\n",
+        encoding="utf-8",
+    )
+    model = (ROOT / "models" / "drying.toml").read_text(encoding="utf-8")
+    model = model.partition("[conditions]")[0].replace('forward = "drying"', 'forward = "drying-features"')
+    (tmp_path / "example.toml").write_text(model + block, encoding="utf-8")
+    problem = sb.load_problem(tmp_path / "example.toml")
+    assert problem.names == ("noise_scale[peak_width]",)
+    assert problem.observables == ("wet_plateau", "peak_width")
+    assert problem.predict_data(problem.prior_medians()).shape == (2,)
+    assert sb.load_problem(tmp_path / "example.toml").log_likelihood([0.3]) < 0

@@ -43,8 +43,8 @@ def test_the_good_file_is_read(tmp_path: Path) -> None:
     path = tmp_path / "good.toml"
     path.write_text(GOOD)
     spec = load_model(path)
-    assert (spec.name, spec.title, spec.forward, spec.observable) == (
-        "good", "Fingers", "friction", "friction_coefficient",
+    assert (spec.name, spec.title, spec.forward, spec.observables) == (
+        "good", "Fingers", "friction", ("friction_coefficient",),
     )  # fmt: skip
     values = {p.label: p.value for p in spec.parameters}
     assert values["young_modulus_layer"] == 7e6 and values["young_modulus_bulk"] == 2e4
@@ -146,7 +146,7 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "title missing": (edited('title = "Fingers"\n', ""), ("title", "is missing")),
     "forward missing": (edited('forward = "friction"\n', ""), ("forward", "is missing")),
     "parameters missing": ("title = 'x'\nforward = 'friction'\n", ("parameters", "is missing")),
-    "observable missing": (edited('observable = "friction_coefficient"\n', ""), ("observable", "is missing")),
+    "observable missing": (edited('observable = "friction_coefficient"\n', ""), ("observable", "or 'observables'")),
     "noise missing": (GOOD[: GOOD.index("[noise]")], ("[noise] is missing",)),
     "data missing": (
         GOOD[: GOOD.index("[data]")] + GOOD[GOOD.index("[surface]") :], ("[data] is missing",),
@@ -260,8 +260,8 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "noise scale missing": (edited("noise_scale = { half_normal = 0.5 }\n", ""), (line_of("[noise]"), "needs noise_scale")),
     "tails missing": (edited('"lognormal"', '"log_student_t"'), ("needs degrees_of_freedom",)),
     "tails too many": (GOOD + "degrees_of_freedom = 4\n", ("degrees_of_freedom", "has no degrees of freedom")),
-    "negative scale": (edited("{ half_normal = 0.5 }", "-0.5"), (NOISE_LINE, "-0.5", "> 0")),
-    "zero scale": (edited("{ half_normal = 0.5 }", "0"), (NOISE_LINE, "> 0")),
+    "negative scale": (edited("{ half_normal = 0.5 }", "-0.5"), (NOISE_LINE, "-0.5", ">= 0")),
+    "zero scale": (edited("{ half_normal = 0.5 }", "0"), ("noise_scale is 0", "known spread")),
     "scale with a unit": (edited("{ half_normal = 0.5 }", '"0.1 N"'), (NOISE_LINE, "wrong dimension")),
     # levels
     "by an unknown column": (

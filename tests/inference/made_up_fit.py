@@ -63,7 +63,7 @@ def made_up_fit(
     provenance = {
         "model": "made-up",
         "names": list(NAMES[:parameters]),
-        "observable": observable,
+        "observables": [observable],
         "sampling": sampling,
     }
     return Fit(groups, provenance)

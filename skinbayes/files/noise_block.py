@@ -1,0 +1,115 @@
+"""``[noise]`` of a model file: how each observable scatters about the forward model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from skinbayes.errors import InputError
+from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_parameter
+from skinbayes.statistics.noise import NOISE_FAMILIES
+from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
+
+NOISE_PARAMETERS = ("noise_scale", "degrees_of_freedom", "discrepancy_factor", "discrepancy_scale")
+"""Parameters that live in ``[noise]``."""
+
+OBSERVABLE = "observable"
+"""What the noise of a model with several observables differs by."""
+
+
+def read_noise(
+    block: dict[str, Any], observables: list[str], several: bool, where: Callable[..., str]
+) -> tuple[dict[str, str], tuple[ParameterSpec, ...]]:
+    """Read ``[noise]``.
+
+    Parameters
+    ----------
+    block : its content: the noise of the one observable, or, where there are ``several``, one table for each
+    observables : names
+    several : whether the model file lists observables
+    where : place of a key, for messages
+
+    Returns
+    -------
+    families : observable to name of its noise family
+    parameters : all parameters of noise and discrepancy; ``noise_scale[peak_time]`` where there are several observables
+
+    Raises
+    ------
+    InputError
+        Unknown family, key or observable, or a parameter missing.
+    """
+    for observable in observables:
+        if observable not in QUANTITIES:
+            key = "observables" if several else "observable"
+            raise InputError(
+                f"{where('data', key)}: unknown quantity '{observable}'.{suggestions(observable, list(QUANTITIES))}"
+            )
+    if not several:
+        family, parameters = _one_observable(block, observables[0], None, where, ("noise",))
+        return {observables[0]: family}, parameters
+    if unknown := [name for name in block if name not in observables]:
+        raise InputError(
+            f"{where('noise', unknown[0])}: found {unknown[0]!r}.{suggestions(unknown[0], observables)} "
+            f"Expected one table for each observable: {', '.join(f'[noise.{name}]' for name in observables)}"
+        )
+    families: dict[str, str] = {}
+    found: tuple[ParameterSpec, ...] = ()
+    for observable in observables:
+        place = ("noise", observable)
+        entry = block.get(observable)
+        if not isinstance(entry, dict):
+            raise InputError(f"{where(*place)}: [noise.{observable}] is missing")
+        families[observable], parameters = _one_observable(entry, observable, observable, where, place)
+        found += parameters
+    return families, found
+
+
+def _one_observable(
+    block: dict[str, Any],
+    observable: str,
+    level: str | None,
+    where: Callable[..., str],
+    place: tuple[str, ...],
+) -> tuple[str, tuple[ParameterSpec, ...]]:
+    family = block.get("family")
+    names = list(NOISE_FAMILIES)
+    if family not in names:
+        hint = suggestions(str(family), names)
+        raise InputError(
+            f"{where(*place, 'family')}: found {family!r}.{hint} Expected one of {', '.join(names)}"
+        )
+    noise = NOISE_FAMILIES[str(family)]
+    unit = "1" if noise.relative else QUANTITIES[observable].unit
+    parameters: list[ParameterSpec] = []
+    for name, entry in block.items():
+        if name == "family":
+            continue
+        quantity = _noise_quantity(name, where(*place, name))
+        unit_here = unit if name == "noise_scale" else None
+        if level is None:
+            parameters += parse_levels(
+                quantity, entry, lambda *keys, name=name: where(*place, name, *keys), unit_here
+            )
+        else:
+            parameters.append(
+                parse_parameter(quantity, entry, where(*place, name), unit_here, OBSERVABLE, level)
+            )
+    given = {parameter.name for parameter in parameters}
+    needed = {"noise_scale", "degrees_of_freedom"} if noise.heavy_tailed else {"noise_scale"}
+    if missing := sorted(needed - given):
+        raise InputError(f"{where(*place)}: noise family '{family}' needs {' and '.join(missing)}")
+    if "degrees_of_freedom" in given and "degrees_of_freedom" not in needed:
+        raise InputError(
+            f"{where(*place, 'degrees_of_freedom')}: noise family '{family}' has no degrees of freedom"
+        )
+    return str(family), tuple(parameters)
+
+
+def _noise_quantity(name: str, where: str) -> Quantity:
+    if name not in NOISE_PARAMETERS:
+        known = ["family", *NOISE_PARAMETERS]
+        raise InputError(
+            f"{where}: unknown key '{name}'.{suggestions(name, known)} Expected {', '.join(known)}"
+        )
+    return QUANTITIES[name]

@@ -1,0 +1,177 @@
+"""The likelihood of a problem: noise about predictions, the spread of inputs, and the effects that groups share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+from skinbayes.problem.observations import Observation, propagated_spread
+from skinbayes.statistics.groups import CrossedGroups
+
+if TYPE_CHECKING:
+    from skinbayes.problem.problem import Problem
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """Log-density of the data of a problem and draws from it, for batches ``(B, D)`` of parameter vectors in SI.
+
+    ``y = f(θ) + effects + noise``, or ``ln y = ln f(θ) + effects + noise`` where the noise is logarithmic. Effects of groups
+    are normal and integrated out.
+    """
+
+    problem: Problem
+
+    def pointwise(self, theta: FloatArray) -> FloatArray:
+        """ln p of each datum, shape ``(B, M)``: given θ, and given all other data where groups share effects."""
+        inputs, predicted = self._predictions(theta)
+        density = np.concatenate(
+            [self._pointwise(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)],
+            axis=-1,
+        )
+        # NaN where the forward model has no answer: samplers count those apart from data that are impossible
+        return np.where(np.isnan(np.concatenate(predicted, axis=-1)), np.nan, density)
+
+    def total(self, theta: FloatArray) -> FloatArray:
+        """ln p of all data, shape ``(B,)``; NaN where the forward model has no answer."""
+        groups = self.problem.groups
+        if groups is None:
+            return self.pointwise(theta).sum(axis=-1)
+        inputs, (predicted,) = self._predictions(theta)
+        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        density = groups.log_density(residual, width, scales) + offset.sum()
+        return np.where(np.isnan(predicted).any(axis=-1), np.nan, density)
+
+    def left_out(self, theta: FloatArray, column: str) -> FloatArray:
+        """ln p of all data of each level of a grouping column given the others, shape ``(B, levels)``."""
+        labels = self.problem.conditions.labels
+        if column not in labels:
+            raise InputError(
+                f"{self.problem.spec.path}: the data have no column '{column}'; "
+                f"grouping columns: {', '.join(labels) or 'none'}"
+            )
+        if len(self._observations) > 1:
+            raise InputError(f"{self.problem.spec.path}: leaving out groups needs a model of one observable")
+        levels = list(dict.fromkeys(labels[column].tolist()))
+        block = np.array([levels.index(label) for label in labels[column].tolist()])
+        groups = self.problem.groups
+        if groups is None:
+            pointwise = self.pointwise(theta)
+            return np.stack([pointwise[:, block == i].sum(axis=-1) for i in range(len(levels))], axis=-1)
+        inputs, (predicted,) = self._predictions(theta)
+        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        jacobian = np.bincount(block, weights=offset, minlength=len(levels))
+        density = groups.log_density_left_out(residual, width, scales, block) + jacobian
+        return np.where(np.isnan(predicted).any(axis=-1, keepdims=True), np.nan, density)
+
+    def draw(
+        self, theta: FloatArray, rng: np.random.Generator, effects: FloatArray | None = None
+    ) -> FloatArray:
+        """Simulated data, shape ``(B, M)``; effects of groups drawn anew unless given, ``(B, G)``."""
+        inputs, predicted = self._predictions(theta)
+        drawn = [
+            o.noise.draw(rng, f, observed=o.values, **self._arguments(o, inputs))
+            for o, f in zip(self._observations, predicted, strict=True)
+        ]
+        groups = self.problem.groups
+        if groups is not None:
+            if effects is None:
+                effects = groups.draw_new_effects(rng, self._scales(groups, inputs, len(theta)))
+            at_rows = groups.at_rows(effects)
+            logarithmic = self._observations[0].noise.logarithmic
+            drawn = [drawn[0] * np.exp(at_rows) if logarithmic else drawn[0] + at_rows]
+        return np.concatenate(drawn, axis=-1)
+
+    def draw_effects(self, theta: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Effects of all levels of all groups given parameters and data, shape ``(B, G)``."""
+        groups = self.problem.groups
+        if groups is None:
+            raise InputError(f"{self.problem.spec.path}: '{self.problem.name}' has no [groups]")
+        inputs, (predicted,) = self._predictions(theta)
+        residual, width, scales, _ = self._residuals(groups, inputs, predicted)
+        return groups.draw_effects(rng, residual, width, scales)
+
+    def width(self, theta: FloatArray) -> FloatArray:
+        """Width of the noise of each datum, shape ``(B, M)``; of its ln where the noise is logarithmic."""
+        inputs, predicted = self._predictions(theta)
+        return np.concatenate(
+            [self._width(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)], axis=-1
+        )
+
+    def covariance(self, theta: FloatArray) -> FloatArray:
+        """Covariance of what scatters, group effects included, at one parameter vector ``(D,)``, shape ``(M, M)``."""
+        batch = theta[np.newaxis]
+        covariance = np.diag(self.width(batch)[0] ** 2)
+        groups = self.problem.groups
+        if groups is not None:
+            scales = self._scales(groups, self.problem.inputs(batch), 1)[0]
+            for members, scale in zip(groups.member, scales, strict=True):
+                covariance = covariance + scale**2 * (members[:, np.newaxis] == members)
+        return covariance
+
+    # -- inner parts -------------------------------------------------------------------------------------------------
+
+    @property
+    def _observations(self) -> tuple[Observation, ...]:
+        if not self.problem.observations:
+            raise InputError(
+                f"{self.problem.spec.path}: '{self.problem.name}' has no data here, so there is no likelihood"
+            )
+        return self.problem.observations
+
+    def _predictions(self, theta: FloatArray) -> tuple[Mapping[str, FloatArray], list[FloatArray]]:
+        """All inputs, and the prediction of each observation, ``(B, N)``."""
+        inputs = self.problem.inputs(theta)
+        found = self.problem.evaluate(inputs)
+        shape = (len(theta), self.problem.conditions.n_rows)
+        return inputs, [np.broadcast_to(found[o.name], shape) for o in self._observations]
+
+    def _arguments(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        propagated = None
+        if self.problem.input_spread:
+            propagated = propagated_spread(
+                lambda changed: self.problem.evaluate(changed)[observation.name],
+                inputs,
+                self.problem.input_spread,
+                observation,
+            )
+        return observation.noise_arguments(inputs, propagated)
+
+    def _width(
+        self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
+    ) -> FloatArray:
+        arguments = self._arguments(observation, inputs)
+        arguments.pop("degrees_of_freedom", None)
+        width = observation.noise.width(predicted, observed=observation.values, **arguments)
+        return np.broadcast_to(width, predicted.shape)
+
+    def _pointwise(
+        self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
+    ) -> FloatArray:
+        groups = self.problem.groups
+        if groups is None:
+            arguments = self._arguments(observation, inputs)
+            return observation.noise.log_density(observation.values, predicted, **arguments)
+        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        return groups.log_density_pointwise(residual, width, scales) + offset
+
+    def _residuals(
+        self, groups: CrossedGroups, inputs: Mapping[str, FloatArray], predicted: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """What scatters ``(B, N)``, its width, the scales of the effects, and ln of the Jacobian for each datum ``(N,)``."""
+        (observation,) = self._observations
+        residual = observation.noise.residual(observation.values, predicted)
+        width = self._width(observation, inputs, predicted)
+        values = observation.values
+        offset = -np.log(values) if observation.noise.logarithmic else np.zeros_like(values)
+        return residual, width, self._scales(groups, inputs, len(predicted)), offset
+
+    def _scales(self, groups: CrossedGroups, inputs: Mapping[str, FloatArray], count: int) -> FloatArray:
+        """Scale of the effects of each grouping column, shape ``(B, columns)``."""
+        columns = [inputs[f"group_scale[{column}]"][:, 0] for column in groups.columns]
+        return np.stack([np.broadcast_to(column, (count,)) for column in columns], axis=-1)
