@@ -17,6 +17,7 @@ from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
+from skinbayes.cli.template import template
 from skinbayes.errors import InputError
 
 
@@ -40,7 +41,7 @@ def cli() -> None:
     """
 
 
-for _command in (models, datasets, show, digitised, check, prior, predict, fit, compare, report):
+for _command in (models, datasets, show, template, digitised, check, prior, predict, fit, compare, report):
     cli.add_command(_command)
 
 

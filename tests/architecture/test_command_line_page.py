@@ -12,7 +12,7 @@ import pytest
 from skinbayes.cli.main import cli
 
 BLOCKS = page.blocks()
-QUICK = ("models", "show", "check", "prior", "predict")
+QUICK = ("models", "show", "template", "check", "prior", "predict")
 TEXT = page.PAGE.read_text(encoding="utf-8")
 
 

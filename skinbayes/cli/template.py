@@ -1,0 +1,42 @@
+"""``template``: the header of a CSV for a model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from skinbayes.cli.new_file import refuse_existing, write_text
+from skinbayes.cli.output import json_option, print_json
+
+
+@click.command()
+@click.argument("model")
+@click.option("-o", "--output", metavar="FILE.csv", help="CSV to write; without it the header is printed.")
+@click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
+@json_option
+def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> None:
+    """Write the header of a CSV with the columns that the data of a model need, and no rows.
+
+    What each column means is said on standard error.
+    """
+    from skinbayes.problem.template import data_template
+
+    found = data_template(model)
+    if output is not None:
+        refuse_existing([Path(output)], overwrite)
+        write_text(Path(output), f"{found.header}\n")
+    if as_json:
+        columns = [
+            {"name": column.name, "unit": column.unit, "meaning": column.meaning, "why": column.why}
+            for column in found.columns
+        ]
+        print_json({
+            "model": found.model, "file": output, "header": found.header, "columns": columns, "notes": list(found.notes),
+        })  # fmt: skip
+        return
+    click.echo(found.header if output is None else f"template: {output}")
+    for column in found.columns:
+        click.echo(f"- {column.header}: {column.meaning} ({column.why})", err=True)
+    for note in found.notes:
+        click.echo(note, err=True)

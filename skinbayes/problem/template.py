@@ -1,0 +1,188 @@
+"""Which columns the data of a model need: the header of a CSV to be filled in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from skinbayes.errors import InputError
+from skinbayes.files.dataset import find_dataset
+from skinbayes.files.modelfile import ModelSpec, load_model
+from skinbayes.files.table import read_table
+from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
+from skinbayes.problem.rheology import REPLACED
+from skinbayes.units import split_header
+from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX
+
+
+@dataclass(frozen=True)
+class TemplateColumn:
+    """A column that the data of a model need.
+
+    Attributes
+    ----------
+    name : quantity, spread of a quantity, or label
+    unit : SI unit; None for labels
+    meaning : what the column holds
+    why : why the model needs it
+    """
+
+    name: str
+    unit: str | None
+    meaning: str
+    why: str
+
+    @property
+    def header(self) -> str:
+        """As it stands in the header of the CSV."""
+        return self.name if self.unit is None else f"{self.name} [{self.unit}]"
+
+
+@dataclass(frozen=True)
+class DataTemplate:
+    """The header of a CSV for a model.
+
+    Attributes
+    ----------
+    model : name of the model
+    columns : labels, inputs and observables, each with its spread if the model uses it
+    notes : sentences on choices that a user has
+    """
+
+    model: str
+    columns: tuple[TemplateColumn, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def header(self) -> str:
+        """The header line of the CSV."""
+        return ",".join(column.header for column in self.columns)
+
+
+def data_template(name: str | Path) -> DataTemplate:
+    """Columns that the data of a model need, derived from its model file; the data themselves need not exist.
+
+    Parameters
+    ----------
+    name : shipped model or path of a model file
+
+    Returns
+    -------
+    DataTemplate
+        the observables, the inputs that the forward model requires and the model file does not give, and the label columns
+        that it names. Of alternative sets of inputs the one that the model's own data have, or else the first of those that
+        lack least and use most of what is given
+
+    Raises
+    ------
+    InputError
+        for a model file that cannot be used
+
+    Examples
+    --------
+    >>> data_template("drying").header
+    'time [s],friction_coefficient [1]'
+    """
+    spec = load_model(name)
+    forward = forward_model(spec.forward, f"{spec.path}: forward")
+    notes: list[str] = []
+    labels = [TemplateColumn(label, None, LABELS[label], why) for label, why in _labels(spec).items()]
+    inputs: list[TemplateColumn] = []
+    for quantity, why in _inputs(spec, forward, notes).items():
+        inputs.append(_column(quantity, why))
+        if spec.input_spread == "use":
+            inputs.append(_spread(quantity, "the model uses the spread of its inputs"))
+    observables: list[TemplateColumn] = []
+    for quantity in spec.observables or forward.observables[:1]:
+        observables.append(
+            _column(quantity, "what the model explains" if spec.observables else "what the model predicts")
+        )
+        if spec.spread == "use":
+            observables.append(_spread(quantity, "the model adds it to its noise"))
+    if not spec.observables:
+        others = ", ".join(forward.observables[1:])
+        notes.append(
+            "This model has no data: to fit some, give a copy of its file a [data] and a [noise] block; for 'predict "
+            f"--conditions' leave out {forward.observables[0]}."
+            + (f" It also predicts {others}." if others else "")
+        )
+    notes.append("Any unit that converts may stand in the brackets, such as mm/s; every row needs all cells.")
+    return DataTemplate(spec.name, (*labels, *inputs, *observables), tuple(notes))
+
+
+def _column(name: str, why: str) -> TemplateColumn:
+    return TemplateColumn(name, QUANTITIES[name].unit, QUANTITIES[name].meaning, why)
+
+
+def _spread(name: str, why: str) -> TemplateColumn:
+    meaning = f"standard deviation of {name} in this row, such as its reading error"
+    return TemplateColumn(name + STANDARD_DEVIATION_SUFFIX, QUANTITIES[name].unit, meaning, why)
+
+
+def _labels(spec: ModelSpec) -> dict[str, str]:
+    """Label column to the reason why the model needs it."""
+    reasons: dict[str, list[str]] = {}
+    levels: dict[tuple[str, str], list[str]] = {}
+    for parameter in (*spec.parameters, *spec.noise_parameters):
+        if parameter.by in LABELS and parameter.level is not None:
+            levels.setdefault((str(parameter.by), parameter.name), []).append(parameter.level)
+    for (column, name), known in levels.items():
+        reasons.setdefault(column, []).append(f"{name} differs by it: {', '.join(known)}")
+    for scale in spec.groups:
+        reasons.setdefault(str(scale.level), []).append("rows with the same one share an effect")
+    for column, kept in spec.rows.items():
+        reasons.setdefault(column, []).append(f"the model takes the rows with {', '.join(kept)}")
+    if spec.rheology_by is not None:
+        reasons.setdefault(spec.rheology_by, []).append("each has its flow curve")
+    return {column: "; ".join(said) for column, said in reasons.items()}
+
+
+def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[str, str]:
+    """Numeric input to the reason why it is a column; notes on alternatives are added to ``notes``."""
+    given = {parameter.name for parameter in spec.parameters}
+    if spec.surface_name is not None or spec.surface_file is not None or not forward.uses_surface:
+        given |= set(ROUGHNESS_INPUTS)
+    if spec.rheology is not None:
+        given.add(REPLACED)
+    found = {
+        name: "it varies in the conditions of the model" for name in spec.conditions if name not in given
+    }
+    needed = "the forward model needs it and the model file does not give it"
+    own = _own_columns(spec)
+    for entry in (*forward.required, *ROUGHNESS_INPUTS):
+        here = given | set(found)
+        if isinstance(entry, str):
+            if entry not in here:
+                found[entry] = needed
+            continue
+        missing = [[name for name in names if name not in here] for names in entry]
+        if not all(missing):  # one alternative is complete
+            continue
+        best = _best(entry, missing, own)
+        found |= dict.fromkeys(missing[best], needed)
+        others = "; or ".join(" and ".join(names) for i, names in enumerate(missing) if i != best)
+        notes.append(f"Instead of {' and '.join(missing[best])}: {others}.")
+    for covariate in spec.covariates:
+        if covariate.column not in found:
+            found[covariate.column] = f"covariate '{covariate.name}' of {covariate.acts_on}"
+    return found
+
+
+def _best(entry: tuple[tuple[str, ...], ...], missing: list[list[str]], own: set[str]) -> int:
+    """The alternative that the data have, then the one that lacks least, then the one of which most is given."""
+
+    def rank(i: int) -> tuple[bool, int, int]:
+        return not set(missing[i]) <= own, len(missing[i]), len(missing[i]) - len(entry[i])
+
+    return min(range(len(entry)), key=rank)
+
+
+def _own_columns(spec: ModelSpec) -> set[str]:
+    """Names in the header of the model's data; none if they are not there (yet) or cannot be read."""
+    if spec.dataset is None:
+        return set()
+    try:
+        _, path, _ = find_dataset(spec.dataset)
+        return {split_header(header)[0] for header in read_table(path).header}
+    except InputError:
+        return set()
