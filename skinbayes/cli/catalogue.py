@@ -133,7 +133,17 @@ def _show_dataset(name: str, as_json: bool) -> None:
         return
     if provenance is not None:
         click.echo(f"{provenance.title}\n{', '.join(provenance.authors)}\n")
-        for label in ("doi", "licence", "attribution", "where", "how_read", "transformation", "spread"):
+        texts = (
+            "doi",
+            "licence",
+            "attribution",
+            "where",
+            "how_read",
+            "digitised_by",
+            "transformation",
+            "spread",
+        )
+        for label in texts:
             value = getattr(provenance, label)
             if value:
                 click.echo(

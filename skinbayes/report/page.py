@@ -154,7 +154,16 @@ def data_origin(fit: Fit) -> dict[str, Any]:
     """Where the data come from; what a file without provenance does not say is empty."""
     known = fit.provenance["data"]
     origin = known.get("origin", {})
-    texts = ("title", "licence", "attribution", "where", "how_read", "transformation", "spread")
+    texts = (
+        "title",
+        "licence",
+        "attribution",
+        "where",
+        "how_read",
+        "digitised_by",
+        "transformation",
+        "spread",
+    )
     return {
         "key": str(known.get("key", "")),
         "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
