@@ -1,5 +1,6 @@
 """Wet and drying skin: water, evaporation, capillary bridges, drying and humidity."""
 
+from skinbayes.wetting.bridge_table import BridgeTable, bridge_table, skin_groups
 from skinbayes.wetting.capillary import CapillaryState, capillary_state, capillary_state_at_gap, kelvin_gap
 from skinbayes.wetting.drying import DryingCurve, DryingFeatures, drying_curve, drying_features
 from skinbayes.wetting.evaporation import (
@@ -32,10 +33,12 @@ __all__ = [
     "LATENT_HEAT_OF_PAPER",
     "MOLECULE_DIAMETER",
     "STILL_AIR_COEFFICIENT",
+    "BridgeTable",
     "CapillaryState",
     "DryingCurve",
     "DryingFeatures",
     "FilmContact",
+    "bridge_table",
     "capillary_state",
     "capillary_state_at_gap",
     "capillary_state_in_humid_air",
@@ -52,6 +55,7 @@ __all__ = [
     "latent_heat_of_evaporation",
     "molecular_volume_of_water",
     "saturation_vapour_pressure",
+    "skin_groups",
     "surface_tension_of_water",
     "young_modulus_at_humidity",
 ]

@@ -26,6 +26,22 @@ def coefficients(values: FloatArray) -> FloatArray:
     return np.asarray(_to_coefficients(values.shape[1]) @ values)
 
 
+@lru_cache(maxsize=32)
+def _to_values(count: int) -> FloatArray:
+    """Matrix from coefficients to values at the nodes, transposed."""
+    return np.ascontiguousarray(np.linalg.inv(_to_coefficients(count)).T)
+
+
+def values_at_nodes(parts: FloatArray) -> FloatArray:
+    """Values at the nodes of the series with coefficients ``parts``, both of shape ``(B, K)``."""
+    return np.asarray((parts[:, None, :] @ _to_values(parts.shape[1]))[:, 0, :])
+
+
+def values_between(count: int, t: FloatArray) -> FloatArray:
+    """Matrix from values at the nodes to those at t, from −1 to 1 and of shape ``(P,)``, shape ``(P, count)``."""
+    return np.asarray(polynomials(t, count)[0] @ _to_coefficients(count))
+
+
 def polynomials(t: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
     """T_0 … T_(count−1) at t, from −1 to 1, on a new last axis, and their derivatives."""
     values, slopes = np.empty((2, count, *t.shape))

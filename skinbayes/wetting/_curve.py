@@ -18,10 +18,11 @@ from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._roots import smallest_root
 from skinbayes.wetting._types import BoolArray, IndexArray
 
-_GAPS = {"gaussian": 32, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
-_TERMS = 8192  # of a block that is solved at a time
+TERMS = {"gaussian": 32, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
+_BLOCK = 8192  # of a block that is solved at a time
 _REACH, _MARGIN = 0.75, 0.97
-_REFERENCE = 3.0  # d0 in units of the mean separation at p0
+REFERENCE = 3.0  # d0 in units of the mean separation at p0
+_MODERATE = 3  # longest of the spans below for curves that all end at the same z
 _SPANS = ((0.55, 9), (0.8, 11), (1.4, 17), (2.2, 25), (4.0, 41), (8.0, 81))
 """Span of ln p and how many pressures interpolate it to 1e-5 or better."""
 
@@ -34,7 +35,7 @@ class Curve(NamedTuple):
     reference : d0, m, shape ``(B,)``
     end : largest z, dimensionless, shape ``(B,)``
     nodes : ln film (m) at the nodes of z, shape ``(B, M)``
-    parts : Chebyshev coefficients in z of ln film (m), ln p (Pa), ln F and ln ū (m), shape ``(B, M, 4)``
+    parts : Chebyshev coefficients in z of ln film (m), ln p (Pa), ln F and ln ū (m), shape ``(B, M, 4)``, or of the first two
     """
 
     reference: FloatArray
@@ -42,8 +43,21 @@ class Curve(NamedTuple):
     nodes: FloatArray
     parts: FloatArray
 
+    def select(self, rows: BoolArray) -> Curve:
+        """The curves of some skins."""
+        return Curve(self.reference[rows], self.end[rows], self.nodes[rows], self.parts[rows])
+
+    def flooded(self) -> FloatArray:
+        """The film at which the gap is full, m, shape ``(B,)``."""
+        return self.reference / REFERENCE
+
+    def along(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """ln film (m) and ln p (Pa) at z of shape ``(B, F)``, each of that shape."""
+        t = 2 * z / self.end[:, None] - 1
+        return clenshaw(self.parts[..., 0], t)[0], clenshaw(self.parts[..., 1], t)[0]
+
     def at(self, film: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
-        """z and ``ln p, ln F, ln ū`` at films (m) of shape ``(B, F)``, each of that shape."""
+        """z, and ``ln p, ln F, ln ū`` as far as they are known, at films (m) of shape ``(B, F)``, each of that shape."""
         target = np.log(film)
         count = self.nodes.shape[1]
         # the film falls as z grows, apart from folds at nanometres, where the first crossing is taken; start on the chord
@@ -66,20 +80,28 @@ class Curve(NamedTuple):
             active = active & ~last
             if not active.any():
                 break
-        return (t + 1) / 2 * self.end[:, None], [clenshaw(self.parts[..., i], t)[0] for i in (1, 2, 3)]
+        return (t + 1) / 2 * self.end[:, None], [
+            clenshaw(self.parts[..., i], t)[0] for i in range(1, self.parts.shape[-1])
+        ]
 
 
 def solve_curve(
-    source: GapSource, pressure: FloatArray, pull: FloatArray, separation: FloatArray, thinnest: FloatArray
+    source: GapSource,
+    pressure: FloatArray,
+    pull: FloatArray,
+    separation: FloatArray,
+    thinnest: FloatArray,
+    last: float | None = None,
 ) -> Curve:
     """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m.
 
-    Where the pull grows so fast that there is no such film, the curve ends at a thicker one.
+    Where the pull grows so fast that there is no such film, the curve ends at a thicker one. If ``last`` is given all curves end
+    at that z instead, and are nan where the pull is many times the load.
     """
     thinnest = thinnest.copy()
-    count, gaps = pressure.size, _GAPS[source.closure]
+    count, gaps = pressure.size, TERMS[source.closure]
     curve = Curve(
-        _REFERENCE * separation,
+        REFERENCE * separation,
         np.zeros(count),
         np.full((count, gaps), np.nan),
         np.full((count, gaps, 4), np.nan),
@@ -90,6 +112,9 @@ def solve_curve(
     for _ in range(100):
         span = np.log1p(reach[todo] * pull[todo] / separation[todo] / pressure[todo]) + 1e-3
         need = np.searchsorted([s for s, _ in _SPANS], span)
+        if last is not None:
+            moderate = need <= _MODERATE
+            todo, span, need = todo[moderate], span[moderate], need[moderate]
         again = [np.empty(0, dtype=np.intp)]
         for group in np.unique(need):
             if group == len(_SPANS):  # pressures out of reach: do with a curve that ends earlier
@@ -101,9 +126,12 @@ def solve_curve(
             rows = todo[need == group]
             start, length = np.log(pressure[rows]), span[need == group]
             family = gap_family(start, length, source.select(rows), _SPANS[group][1])
-            end = np.log1p(curve.reference[rows] / (margin[rows] * family.gap_of_film(thinnest[rows])))
+            if last is None:
+                end = np.log1p(curve.reference[rows] / (margin[rows] * family.gap_of_film(thinnest[rows])))
+            else:
+                end = np.full(rows.size, last)
             short = _solve_rows(curve, family, rows, pressure, pull, end)
-            thick = ~short & (curve.nodes[rows, -1] > np.log(thinnest[rows]))
+            thick = ~short & (curve.nodes[rows, -1] > np.log(thinnest[rows])) & (last is None)
             reach[rows[short]] *= 2.5
             margin[rows[thick]] *= 0.7
             again.append(rows[short | thick])
@@ -126,7 +154,7 @@ def _solve_rows(
     needed = family.components_above(gap[:, -1])
     for keep in np.unique(needed).tolist():
         alike = np.flatnonzero(needed == keep)
-        step = max(1, _TERMS // (count * (keep + 1)))
+        step = max(1, _BLOCK // (count * (keep + 1)))
         for first in range(0, alike.size, step):
             block = alike[first : first + step]
             part, here = family.block(block).lumped(keep), rows[block]

@@ -89,7 +89,7 @@ def kelvin_gap(
     """
     radius = np.asarray(kelvin_radius, dtype=np.float64)
     with np.errstate(all="ignore"):
-        wetting = np.maximum(_wetting(contact_angle_skin, contact_angle_counterface), 0.0)
+        wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
         return np.asarray(np.where(radius > 0, radius, np.nan) * wetting)[()]
 
 
@@ -275,7 +275,7 @@ class _Solved(NamedTuple):
     solutions: FloatArray
 
 
-def _wetting(contact_angle_skin: ArrayLike, contact_angle_counterface: ArrayLike) -> FloatArray:
+def cosine_sum(contact_angle_skin: ArrayLike, contact_angle_counterface: ArrayLike) -> FloatArray:
     """cos θ1 + cos θ2; nan for impossible angles."""
     angles = (np.asarray(x, dtype=np.float64) for x in (contact_angle_skin, contact_angle_counterface))
     first, second = (np.cos(np.where((x >= 0) & (x <= np.pi), x, np.nan)) for x in angles)
@@ -299,7 +299,7 @@ def _flatten(
         np.asarray(x, dtype=np.float64) for x in (wanted, nominal_pressure, surface_tension, area_correction)
     )
     with np.errstate(all="ignore"):
-        wetting = np.maximum(_wetting(contact_angle_skin, contact_angle_counterface), 0.0)
+        wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
         pull = np.where(tension >= 0, tension, np.nan) * wetting
         pressure = np.where(pressure > 0, pressure, np.nan)
     shapes = [*batch_shapes(spectrum, skin), pressure.shape, pull.shape, gamma.shape, films.shape[:-1]]

@@ -42,7 +42,7 @@ class DryingFeatures(NamedTuple):
     Attributes
     ----------
     peak_time : time of the largest friction while the film gets thinner, s; nan without a peak
-    peak_friction : μ there, dimensionless
+    peak_friction : μ there, dimensionless; nan without a peak
     peak_width : time between the half heights of the peak over the wet plateau, s; nan without a peak
     wet_plateau : μ of flooded skin, dimensionless
     dry_friction : μ of dry skin, dimensionless
@@ -174,7 +174,7 @@ def drying_features(
     >>> contact = film_contact(6830.0, surface, skin, 0.0727, radians(80.0), 0.0, 1e9, 50e6)
     >>> features = drying_features(30.0, 90e-6, 1.743e-7, contact, 15e6, 6830.0)
     >>> print(f"{features.peak_time:.1f} {features.peak_friction:.3f} {features.peak_width:.1f} {features.dry_time:.1f}")
-    513.3 2.319 66.5 546.4
+    513.2 2.319 66.5 546.4
     """
     arguments = (wetting_time, initial_film, evaporation_rate, film_spread)
     start, film, rate, spread = (np.asarray(x, dtype=np.float64) for x in arguments)
@@ -212,7 +212,7 @@ def drying_features(
         ]
         return DryingFeatures(
             np.where(there, start + (film - peak) / rate, np.nan)[()],
-            friction[0],
+            np.where(there, friction[0], np.nan)[()],
             np.where(there, (rise - fall) / rate, np.nan)[()],
             friction[1],
             friction[2],

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from math import prod
 
 import numpy as np
 
@@ -12,14 +14,18 @@ from skinbayes.contact import (
     AREA_CORRECTION,
     LayeredSkin,
     elastoplastic_contact_area,
-    mean_separation,
     stress_variance,
 )
+from skinbayes.contact.gaps import CLOSURES
+from skinbayes.errors import InputError
+from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
-from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, polynomials
-from skinbayes.wetting._gaps import Closure, batch_shapes
+from skinbayes.wetting._bridged import Bridged
+from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, values_between
+from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
 from skinbayes.wetting._mixture import upper_tail
-from skinbayes.wetting.capillary import capillary_state
+from skinbayes.wetting.bridge_table import BridgeTable
+from skinbayes.wetting.capillary import cosine_sum
 from skinbayes.wetting.humidity import softened_modulus
 
 FILM_FLOOR = 1e-7
@@ -28,6 +34,7 @@ FILM_FLOOR = 1e-7
 _FILMS, _POINTS, _MODULI = 32, 256, 12
 _NO_SPREAD = 1e-12  # m
 _TERMS = 1 << 14  # treated at a time
+_FAR = 9.0  # widths of the spread beyond which a normal distribution has nothing left
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,28 +68,41 @@ class FilmContact:
         -------
         area, slope : dimensionless and 1/m, shape ``S + (T,)``
         """
-        width = np.maximum(np.asarray(spread), _NO_SPREAD)[..., None, None]
+        films, width = np.asarray(film), np.maximum(np.asarray(spread), _NO_SPREAD)
+        batch = np.broadcast_shapes(films.shape[:-1], self.dry_area.shape, width.shape)
+        shape = (*batch, films.shape[-1])
+        place, wide = (
+            np.broadcast_to(films, shape).reshape(-1),
+            np.broadcast_to(width[..., None], shape).reshape(-1),
+        )
+        edge, local = (
+            np.broadcast_to(x, (*batch, x.shape[-1])).reshape(-1, x.shape[-1]) for x in (self.film, self.area)
+        )
+        dry = np.broadcast_to(self.dry_area, batch).reshape(-1)
         # area is a sum of one step and of ramps, whose averages over a normal distribution are closed forms
-        grades = np.diff(self.area) / np.diff(self.film)
-        zero = np.zeros_like(grades[..., :1])
-        turns = np.diff(np.concatenate([zero, grades, zero], axis=-1))[..., None, :]
-        edge = self.film[..., None, :]
-        films = np.asarray(film)[..., None]
-        shape = np.broadcast_shapes(films.shape[:-1], edge.shape[:-1], width.shape[:-1])
-        films = np.broadcast_to(films, (*shape, 1))
-        area, slope = np.empty((2, *shape))
-        step = max(1, _TERMS * shape[-1] // max(1, area.size * edge.shape[-1]))
-        for first in range(0, shape[-1], step):
-            block = slice(first, first + step)
-            distance = (films[..., block, :] - edge) / width
+        grades = np.diff(local) / np.diff(edge)
+        turns = np.diff(grades, axis=-1, prepend=0.0, append=0.0)
+        jump = local[:, 0] - dry
+        member = np.repeat(np.arange(dry.size), shape[-1])
+        # far from the first and the last edge there is nothing to average
+        area, slope = (
+            np.where(place > edge[member, -1], local[member, -1], dry[member]),
+            np.zeros(place.shape),
+        )
+        near = (place > edge[member, 0] - _FAR * wide) & (place < edge[member, -1] + _FAR * wide)
+        todo = np.flatnonzero(near | ~np.isfinite(place + wide + edge[member, -1]))
+        step = max(1, _TERMS // edge.shape[-1])
+        for first in range(0, todo.size, step):
+            here = todo[first : first + step]
+            rows, broad = member[here], wide[here, None]
+            distance = (place[here, None] - edge[rows]) / broad
             bell = np.exp(-0.5 * np.square(distance)) / np.sqrt(2 * np.pi)
             below = upper_tail(np.abs(distance), bell)
             below = np.where(distance > 0, 1 - below, below)
-            jump = (self.area[..., 0] - self.dry_area)[..., None]
-            slope[..., block] = (turns * below).sum(axis=-1) + jump * bell[..., 0] / width[..., 0]
-            ramps = (turns * (width * (distance * below + bell))).sum(axis=-1)
-            area[..., block] = self.dry_area[..., None] + jump * below[..., 0] + ramps
-        return area, slope
+            slope[here] = (turns[rows] * below).sum(axis=-1) + jump[rows] * bell[:, 0] / broad[:, 0]
+            ramps = (turns[rows] * (broad * (distance * below + bell))).sum(axis=-1)
+            area[here] = dry[rows] + jump[rows] * below[:, 0] + ramps
+        return area.reshape(shape), slope.reshape(shape)
 
 
 def film_contact(
@@ -99,6 +119,7 @@ def film_contact(
     film_floor: ArrayLike = FILM_FLOOR,
     hardening_film: ArrayLike | None = None,
     hardening_sharpness: ArrayLike = 2.0,
+    table: BridgeTable | None = None,
 ) -> FilmContact:
     """Contact area of drying skin against the film, flooded, bridged and dry (Sect. 5 and Figs. 8 and 9 of the paper).
 
@@ -122,6 +143,8 @@ def film_contact(
         down to the floor. E0 is the wet one where the gap is flooded.
     hardening_sharpness : k of the weight ``w^k/(1 + w^k)``, w = film over ``hardening_film``, of the wet modulus,
         dimensionless, > 0, batch shape
+    table : curves solved beforehand by `bridge_table`, for the Gaussian closure; skins that it does not cover are solved as
+        without it
 
     Returns
     -------
@@ -149,6 +172,8 @@ def film_contact(
     >>> print(f"{contact.dry_area:.3e} {contact.area.max():.3e} {contact.area[-1]:.3e}")
     1.366e-04 1.056e-03 6.481e-04
     """
+    if closure not in CLOSURES:
+        raise InputError(f"closure is {closure!r}, but must be one of {', '.join(map(repr, CLOSURES))}.")
     arguments = [
         np.asarray(x, dtype=np.float64)
         for x in (
@@ -170,35 +195,67 @@ def film_contact(
     )
     batch = np.broadcast_shapes(*shapes, *batch_shapes(spectrum, skin))
 
-    def area_of(pressure: FloatArray, layer: LayeredSkin) -> FloatArray:
-        variance = np.asarray(stress_variance(spectrum, layer))
-        parts = (x[..., None] for x in (variance, limit, gamma))
-        return np.asarray(elastoplastic_contact_area(pressure, *parts).total)
-
-    def pressed(films: FloatArray, layer: LayeredSkin) -> FloatArray:
-        state = capillary_state(
-            films, load, spectrum, layer, tension, first, second, gamma, closure, refine=False
-        )
-        return area_of(np.asarray(state.total_pressure), layer)
+    def flat(value: FloatArray) -> FloatArray:
+        return np.ascontiguousarray(np.broadcast_to(value, batch)).reshape(-1)
 
     with np.errstate(all="ignore"):
-        flooded = np.asarray(mean_separation(load[..., None], spectrum, skin, gamma))
-        start = np.minimum(np.where(floor > 0, floor, np.nan)[..., None], flooded / 2)
-        films = np.broadcast_to(start + (flooded - start) * lobatto(_FILMS), (*batch, _FILMS))
-        if half is None:
-            log_area = np.log(np.broadcast_to(pressed(films, skin), films.shape))
+        pull = np.where(tension >= 0, tension, np.nan) * np.maximum(cosine_sum(first, second), 0.0)
+        surface, gamma = map_spectrum(spectrum, flat), flat(gamma) if gamma.ndim else gamma
+        height = np.broadcast_to(rms_height(surface), (prod(batch),))
+        load, pull, dry, limit = (flat(x) for x in (np.where(load > 0, load, np.nan), pull, dry, limit))
+        flat_skin = map_skin(skin, flat)
+        bridged = Bridged(load, pull, GapSource(surface, flat_skin, gamma, closure), height, table)
+
+        def area_of(pressure: FloatArray, layer: LayeredSkin) -> FloatArray:
+            variance = np.asarray(stress_variance(surface, layer))
+            parts = (x[..., None] for x in (variance, limit, gamma))
+            return np.asarray(elastoplastic_contact_area(pressure, *parts).total)
+
+        lowest = np.where(flat(floor) > 0, flat(floor), np.nan)
+        if half is None and closure == "gaussian":
+            films, log_pressure = bridged.path(_FILMS, lowest)
+            log_area = np.log(area_of(np.exp(log_pressure), flat_skin))
+            log_films = _finer(np.log(films))
+            grid = _ascending(np.exp(log_films), films)
         else:
-            log_area = _hardened(films, skin, dry, half, power, pressed)
-        log_area = np.ascontiguousarray(log_area).reshape(-1, _FILMS)
-        # the same curve at more points
-        points = lobatto(_POINTS)
-        weights = polynomials(2 * points - 1, _FILMS)[0]
-        parts = coefficients(log_area[..., None])[..., 0]
-        fine = np.exp(parts[:, None, :] @ weights.T).reshape(*batch, _POINTS)
-        grid = np.broadcast_to(start + (flooded - start) * points, (*batch, _POINTS))
-        stiff = _with_layer(skin, dry)
-        dry_area = np.broadcast_to(area_of(load[..., None], stiff)[..., 0], batch)
-        return FilmContact(grid, fine, dry_area[()])
+            flooded = bridged.flooded()[0]
+            start = np.minimum(lowest, flooded / 2)[:, None]
+            films = start + (flooded[:, None] - start) * lobatto(_FILMS)
+            grid = start + (flooded[:, None] - start) * lobatto(_POINTS)
+
+            def pressed(layer: LayeredSkin) -> FloatArray:
+                return np.log(area_of(np.exp(bridged.with_skin(layer).log_pressure(films)), layer))
+
+            log_area = (
+                pressed(flat_skin)
+                if half is None
+                else _hardened(films, flat_skin, dry, flat(half), flat(power), pressed)
+            )
+        fine = np.exp(_finer(log_area))
+        dry_area = area_of(load[:, None], _with_layer(flat_skin, dry))[:, 0]
+        grid, fine = (np.where(np.isfinite(x), x, np.nan).reshape(*batch, _POINTS) for x in (grid, fine))
+        return FilmContact(grid, fine, np.broadcast_to(dry_area, load.shape).reshape(batch)[()])
+
+
+@lru_cache(maxsize=1)
+def _finer_weights() -> FloatArray:
+    """Values at more nodes from those at a few, transposed."""
+    return np.ascontiguousarray(values_between(_FILMS, 2 * lobatto(_POINTS) - 1).T)
+
+
+def _finer(values: FloatArray) -> FloatArray:
+    """The same curve at more points, shape ``(B, points)``."""
+    # one product for each member: a product of all rows at once may round differently
+    return np.asarray((values[:, None, :] @ _finer_weights())[:, 0, :])
+
+
+def _ascending(grid: FloatArray, films: FloatArray) -> FloatArray:
+    """Films from the first to the last of ``films`` that never fall: towards the flooded one they meet to the last digits."""
+    least = films[:, :1] + 1e-8 * films[:, -1:] * np.arange(_POINTS)
+    grid = np.maximum(np.maximum.accumulate(grid, axis=1), least)
+    grid = np.minimum(grid, films[:, -1:] * (1 - 1e-8 * np.arange(_POINTS)[::-1]))
+    grid[:, 0] = films[:, 0]
+    return grid
 
 
 def _hardened(
@@ -207,13 +264,12 @@ def _hardened(
     dry: FloatArray,
     half: FloatArray,
     power: FloatArray,
-    pressed: Callable[[FloatArray, LayeredSkin], FloatArray],
+    pressed: Callable[[LayeredSkin], FloatArray],
 ) -> FloatArray:
-    """ln A/A0 at films of shape ``S + (n,)`` whose layer hardens, interpolated between skins of a few moduli."""
-    wet = np.asarray(skin.young_modulus_layer)
+    """ln A/A0 at films of shape ``(B, n)`` whose layer hardens, interpolated between skins of a few moduli."""
+    wet = np.broadcast_to(np.asarray(skin.young_modulus_layer), dry.shape)
     steps = np.log(dry / wet)
-    moduli = [wet * np.exp(steps * share) for share in lobatto(_MODULI)]
-    curves = [np.broadcast_to(np.log(pressed(films, _with_layer(skin, e))), films.shape) for e in moduli]
+    curves = [pressed(_with_layer(skin, wet * np.exp(steps * share))) for share in lobatto(_MODULI)]
     parts = coefficients(np.stack([curve.reshape(-1) for curve in curves], axis=-1)[..., None])[..., 0]
     wetness = films / np.where(half > 0, half, np.nan)[..., None]
     one = np.ones(())
