@@ -1,8 +1,8 @@
-"""Rows that differ in nothing but the abscissa of a curve, so that one curve serves them all."""
+"""Rows that differ in nothing, or in nothing but the abscissa of a curve, so that one evaluation serves them all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,17 +38,57 @@ def along_rows(
     count = max(table.shape[-1] for table in tables.values())
     along = tables.pop(abscissa)
     along = np.broadcast_to(along, (along.shape[0], count))
-    groups = _groups([table for table in tables.values() if table.shape[-1] > 1], count)
-    batch = max(along.shape[0], *(table.shape[0] for table in tables.values()))
     found: dict[str, FloatArray] = {}
-    for rows in groups:
-        common = {
-            name: np.ascontiguousarray(table[:, rows[0] if table.shape[-1] > 1 else 0])
-            for name, table in tables.items()
-        }
+    batch = max(along.shape[0], *(table.shape[0] for table in tables.values()))
+    for rows, common in _common(tables, count):
         for name, values in curve(common, np.ascontiguousarray(along[:, rows])).items():
             found.setdefault(name, np.empty((batch, count)))[:, rows] = values
     return found
+
+
+def once_for_alike(
+    inputs: Inputs, function: Callable[[Inputs], dict[str, FloatArray]]
+) -> dict[str, FloatArray]:
+    """Evaluate a function once for all rows whose inputs agree.
+
+    Parameters
+    ----------
+    inputs : name to SI values, each broadcasts to ``(B, N)``
+    function : ``inputs -> {observable: (B,)}`` for inputs that broadcast to ``(B,)``
+
+    Returns
+    -------
+    dict
+        Observable to values of shape ``(B, N)``, rows in their order.
+
+    Examples
+    --------
+    >>> rows = {"film": np.array([[6.0]]), "rate": np.array([[3.0, 3.0, 2.0]])}
+    >>> once_for_alike(rows, lambda common: {"time": common["film"] / common["rate"]})["time"]
+    array([[2., 2., 3.]])
+    """
+    tables = {name: np.atleast_2d(np.asarray(value, dtype=float)) for name, value in inputs.items()}
+    count = max(table.shape[-1] for table in tables.values())
+    batch = max(table.shape[0] for table in tables.values())
+    found: dict[str, FloatArray] = {}
+    for rows, common in _common(tables, count):
+        for name, values in function(common).items():
+            found.setdefault(name, np.empty((batch, count)))[:, rows] = np.asarray(values)[..., np.newaxis]
+    return found
+
+
+def _common(
+    tables: dict[str, FloatArray], count: int
+) -> Iterator[tuple[NDArray[np.intp], dict[str, FloatArray]]]:
+    """Rows of equal columns, and what these columns are, each of shape ``(B,)`` or ``(1,)``."""
+    for rows in _groups([table for table in tables.values() if table.shape[-1] > 1], count):
+        yield (
+            rows,
+            {
+                name: np.ascontiguousarray(table[:, rows[0] if table.shape[-1] > 1 else 0])
+                for name, table in tables.items()
+            },
+        )
 
 
 def _groups(tables: list[FloatArray], count: int) -> list[NDArray[np.intp]]:

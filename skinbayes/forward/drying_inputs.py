@@ -1,0 +1,99 @@
+"""From named inputs to drying skin; shared by the series ``drying`` and its features, in either closure of the gaps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.forward.base import Inputs, Tables
+from skinbayes.forward.capillary_film import WATER_INPUTS, Closure
+from skinbayes.forward.contact_inputs import (
+    PRESSURE_ALTERNATIVES,
+    SKIN_DEFAULTS,
+    SKIN_INPUTS,
+    nominal_pressure_of,
+    skin_of,
+    spectrum_of,
+)
+from skinbayes.wetting import (
+    FILM_FLOOR,
+    LATENT_HEAT_OF_PAPER,
+    BridgeTable,
+    FilmContact,
+    evaporation_rate,
+    film_contact,
+    film_of_droplet,
+)
+
+FILM_ALTERNATIVES = (("initial_film",), ("droplet_volume", "stroke_length", "contact_width"))
+"""How the film right after wetting can be given; the first complete alternative is used."""
+
+EVAPORATION_ALTERNATIVES = (
+    ("evaporation_rate",),
+    ("surface_temperature", "air_temperature", "relative_humidity"),
+)
+"""How evaporation can be given; the first complete alternative is used."""
+
+DRYING_INPUTS = (
+    "wetting_time",
+    FILM_ALTERNATIVES,
+    EVAPORATION_ALTERNATIVES,
+    "frictional_shear_stress",
+    *SKIN_INPUTS,
+    "young_modulus_layer_dry",
+    PRESSURE_ALTERNATIVES,
+    *WATER_INPUTS,
+)
+"""Required inputs of all models of drying skin."""
+
+DRYING_DEFAULTS = {
+    **SKIN_DEFAULTS,
+    "air_speed": 0.0,
+    "latent_heat": LATENT_HEAT_OF_PAPER,
+    "film_spread": 2e-7,
+    "film_floor": FILM_FLOOR,
+    "hardening_sharpness": 2.0,
+}
+"""Still air, the paper's latent heat, a film that is even to 0.2 µm."""
+
+DRYING_ACCEPTED = ("hardening_film",)
+"""Without it the layer keeps its wet modulus down to the floor."""
+
+
+def initial_film_of(inputs: Inputs) -> FloatArray:
+    """Return the film right after wetting [m]: as given, or that of a droplet spread over the track."""
+    if "initial_film" in inputs:
+        return np.asarray(inputs["initial_film"], dtype=float)
+    volume, length, width = (inputs[name] for name in FILM_ALTERNATIVES[1])
+    return np.asarray(film_of_droplet(volume, length, width), dtype=float)
+
+
+def evaporation_rate_of(inputs: Inputs) -> FloatArray:
+    """Return the thickness evaporated per time [m/s]: as given, or Eq. 8 with the temperatures and the humidity."""
+    if "evaporation_rate" in inputs:
+        return np.asarray(inputs["evaporation_rate"], dtype=float)
+    surface, air, humidity = (inputs[name] for name in EVAPORATION_ALTERNATIVES[1])
+    rate = evaporation_rate(surface, air, humidity, inputs["air_speed"], inputs["latent_heat"])
+    return np.asarray(rate, dtype=float)
+
+
+def film_contact_of(
+    inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None = None
+) -> FilmContact:
+    """Return the contact area against the film for inputs that broadcast to the batch."""
+    return film_contact(
+        nominal_pressure_of(inputs),
+        spectrum_of(inputs, tables),
+        skin_of(inputs),
+        inputs["surface_tension"],
+        inputs["contact_angle_skin"],
+        inputs["contact_angle_counterface"],
+        inputs["young_modulus_layer_dry"],
+        inputs["yield_stress"],
+        inputs["area_correction"],
+        closure,
+        inputs["film_floor"],
+        inputs.get("hardening_film"),
+        inputs["hardening_sharpness"],
+        table,
+    )
