@@ -22,6 +22,7 @@ from skinbayes.lubrication.gap_flow import (
 )
 from skinbayes.lubrication.rheology import FlowCurve, Rheology, ShearThinning, thinned_viscosity
 from skinbayes.lubrication.stribeck import (
+    LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
     THICKEST_FILM,
@@ -31,6 +32,7 @@ from skinbayes.lubrication.stribeck import (
 
 __all__ = [
     "LARGEST_STRAIN",
+    "LARGE_STRAIN",
     "NODES",
     "NOTABLE_STRAIN",
     "THICKEST_FILM",

@@ -20,8 +20,12 @@ from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.rheology import Rheology
 from skinbayes.roughness.spectrum import PowerSpectrum
 
-LARGEST_STRAIN = 0.8
-"""b/Rc, dimensionless, beyond which nothing is predicted: there the parabola of Hertz lies 20 % short of the circle."""
+LARGEST_STRAIN = 1.3
+"""b/Rc, dimensionless, beyond which nothing is predicted. It is b/R = 0.74: there the parabola of Hertz lies 16 % short of the
+ball, and the skin around the contact is indented by half a radius."""
+
+LARGE_STRAIN = 0.8
+"""b/Rc, dimensionless, b/R = 0.45, beyond which a prediction is marked as largely strained: the shape is 6 % off."""
 
 NOTABLE_STRAIN = 0.3
 """b/Rc, dimensionless, beyond which a prediction is marked as strained."""
@@ -34,7 +38,7 @@ THICKEST_FILM = 0.5
 class StribeckCurve:
     """Friction of a lubricated ball and what it consists of; all but ``strain`` have the batch shape plus that of the speeds.
 
-    Where a flag of validity is raised the numbers are nan; ``strained`` and ``shear_rate_unmeasured`` only warn.
+    Where a flag of validity is raised the numbers are nan; ``strained``, ``largely_strained`` and ``shear_rate_unmeasured`` only warn.
 
     Attributes
     ----------
@@ -48,6 +52,7 @@ class StribeckCurve:
     central_film : mean separation under the middle of the ball, m
     strain : b/Rc of the Hertz contact, dimensionless, batch shape
     strained : b/Rc is above `NOTABLE_STRAIN`: Hertz's theory is stretched
+    largely_strained : b/Rc is above `LARGE_STRAIN`
     too_strained : b/Rc is above `LARGEST_STRAIN`
     film_beyond_ball : 3π ηv/f_N is above `THICKEST_FILM`: the film is thicker than the inlet that the ball offers
     impossible : an input is not a number or not physical, such as a force or speed below 0
@@ -65,6 +70,7 @@ class StribeckCurve:
     central_film: FloatArray
     strain: FloatArray
     strained: NDArray[np.bool_]
+    largely_strained: NDArray[np.bool_]
     too_strained: NDArray[np.bool_]
     film_beyond_ball: NDArray[np.bool_]
     impossible: NDArray[np.bool_]
@@ -85,6 +91,7 @@ class StribeckCurve:
             f"{THICKEST_FILM:g})",
             "not_converged": "no film was found",
             "strained": f"b/Rc is above {NOTABLE_STRAIN:g}, where Hertz's theory is stretched",
+            "largely_strained": f"b/Rc is above {LARGE_STRAIN:g}: the contact is nearly half as wide as the ball, or wider",
             "shear_rate_unmeasured": "the liquid is sheared at rates for which its viscosity was not measured",
         }
         counts = {name: int(np.count_nonzero(getattr(self, name))) for name in said}
@@ -218,6 +225,7 @@ def _one_curve(
         "speed_viscosity_product": products,
         "strain": strain,
         "strained": solved & (strain > NOTABLE_STRAIN),
+        "largely_strained": solved & (strain > LARGE_STRAIN),
         "too_strained": wide,
         "film_beyond_ball": beyond,
         "impossible": ~possible,

@@ -248,8 +248,12 @@ def test_outside_its_validity_the_theory_is_silent():
     assert np.isfinite(found.friction_coefficient).tolist() == [True, True, False, False]
     assert found.film_beyond_ball.tolist() == [False, False, True, True]
     assert "2 of 4 points: the film is thicker than the inlet of the ball" in found.reasons()[0]
-    wide = curve([1e-3], force=3.0)
-    assert wide.strain > 0.8
+    large = curve([1e-3], force=3.0)
+    assert 0.8 < large.strain < 1.3
+    assert large.largely_strained.all() and large.valid.all()
+    assert any("half as wide as the ball" in reason for reason in large.reasons())
+    wide = curve([1e-3], force=6.0)
+    assert wide.strain > 1.3
     assert wide.too_strained.all()
     assert np.isnan(wide.friction_coefficient).all()
     assert np.isnan(wide.minimum_film).all()
