@@ -1,0 +1,384 @@
+"""A sphere solved in two dimensions, and the cylinder of Eq. 9 against it (Fig. 11 of the paper, and skin)."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from lubricated_sphere import (
+    LOAD,
+    Film,
+    PolarGrid,
+    SphereSolver,
+    drag_integrals,
+    far_inlet,
+    lubricated_sphere,
+    polar_grid,
+    sector_kernel,
+)
+from scipy.interpolate import CubicSpline
+from scipy.special import ellipe, ellipk
+
+from skinbayes.contact import (
+    LayeredSkin,
+    cylinder_of_sphere,
+    reduced_modulus,
+    relative_contact_area,
+    sphere_contact,
+    stress_variance,
+)
+from skinbayes.lubrication import asperity_law, lubricated_films, stribeck_curve
+from skinbayes.roughness import SelfAffineSpectrum, named_surface
+
+# What the map is worth, sphere over cylinder with the whole inlet of its parabola: (smallest, largest) that is accepted
+FIGURE_11 = {
+    "slope of the sphere": (0.502, 0.508),
+    "slope of the cylinder": (0.469, 0.475),
+    "friction at 1e-3 N/m": (1.085, 1.105),
+    "friction at 1e-1 N/m": (1.255, 1.285),
+    "central film at 1e-3 N/m": (0.98, 1.01),
+    "central film at 1e-1 N/m": (0.87, 0.89),
+}
+SKIN = {
+    "plateau": (0.995, 1.005),
+    "speed at half of the plateau": (1.23, 1.27),
+    "speed of the minimum": (1.10, 1.18),
+    "friction at the minimum": (1.16, 1.20),
+    "friction at 1e-1 N/m": (1.02, 1.05),
+}
+FLANK = (1.15, 1.32)  # speed at which asperities carry half of the load, skin under a stiffer layer
+
+GLASS_BALL, PAPER_SKIN = (8e-3, 0.2, 20e3 / 0.75), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+FIGURE_11_BALL = (1e-2, 1.3, 1.6e6)
+
+
+def hertz_deflection(r):
+    """Separation by the pressure √(1 − r²), in the units of the solver."""
+    far = np.maximum(r, 1)
+    outside = ((2 - far**2) * np.arcsin(1 / far) + np.sqrt(far**2 - 1)) / pi
+    return np.where(r < 1, 1 - r**2 / 2, outside)
+
+
+def number_of(product, radius, force, modulus):
+    hertz = sphere_contact(force, radius, modulus)
+    return 6 * product * radius**2 / (hertz.contact_radius**3 * hertz.maximum_pressure)
+
+
+def test_kernel_of_a_uniform_disk():
+    faces = np.array([0.0, 0.2, 0.5, 1.0, 1.02, 4.0])
+    r = np.array([0.05, 0.4, 0.99, 1.01, 3.0])
+    sectors = sector_kernel(r, faces, 7)
+    disk = 2 * sectors[:, :3, 1:-1].sum(axis=(1, 2)) + sectors[:, :3, [0, -1]].sum(axis=(1, 2))
+    inside, outside = np.minimum(r, 1 - 1e-9) ** 2, np.minimum(1 / r, 1 - 1e-9) ** 2
+    exact = np.where(r < 1, ellipe(inside), r * (ellipe(outside) - (1 - outside) * ellipk(outside)))
+    np.testing.assert_allclose(disk, 8 / pi**2 * exact, rtol=1e-10)
+
+
+def test_deflection_of_hertz():
+    off = []
+    for rings, rays in ((24, 12), (48, 24)):
+        grid = polar_grid(rings, rays, 0.1, 20.0)
+        pressure = np.sqrt(np.maximum(1 - grid.radius**2, 0))
+        off.append(np.abs(grid.kernel @ pressure - hertz_deflection(grid.radius)).max())
+    assert off[1] < 1.5e-3
+    assert off[1] < off[0] / 3.5
+
+
+def test_flow_of_a_rigid_sphere_balances():
+    # full film: P = −λ x/(5 H²) solves the film equation of a parabola
+    off = []
+    for rings, rays in ((20, 12), (40, 24)):
+        grid = polar_grid(rings, rays, 1.0, 20.0)
+        solver = SphereSolver(grid)
+        film = 1 + grid.radius**2 / 2
+        lost = solver.balance @ solver.flows(film, -grid.radius * np.cos(grid.angle) / (5 * film**2), 1.0)[0]
+        wedge = np.abs(grid.radius * np.cos(grid.angle)) * grid.area / 2
+        off.append(np.abs(lost[~grid.rim]).sum() / wedge[~grid.rim].sum())
+    assert off[1] < 0.006
+    assert off[1] < off[0] / 2.5
+
+
+def test_thick_films_are_those_of_a_rigid_sphere():
+    # Brewe, Hamrock & Taylor, J. Lubr. Technol. 101 (1979) 231: h/R = 128 [φ 1.744 η u R/F]², φ = 3/5, u the mean speed.
+    # With the pressure −λ x/(5 H²) of the full film before the middle and none behind it, h/R = (4.8π η u R/F)²/2 and
+    # h = (3λ/5)²/2 in the units of the solver
+    number = 100.0
+    halved = (0.6 * number) ** 2 / 2
+    wanted = halved * 128 * (0.6 * (0.131 * np.arctan(0.5) + 1.683)) ** 2 / ((4.8 * pi) ** 2 / 2)
+    width = np.sqrt(2 * wanted)
+    grid = polar_grid(40, 24, 0.5 * width, 60 * width)
+    guess = np.maximum(
+        -0.2 * number * grid.radius * np.cos(grid.angle) / (wanted + grid.radius**2 / 2) ** 2, 0
+    )
+    solver = SphereSolver(grid)
+    state = solver(Film(guess, wanted), number, 60)
+    assert state is not None
+    assert solver.separation(state).min() == pytest.approx(wanted, rel=0.02)
+
+
+def test_stiff_asperities_carry_like_a_dry_contact():
+    grid = polar_grid(32, 8, 0.05, 20.0)
+
+    def law(film):
+        pressure = np.exp(np.minimum((0.02 - film) / 1e-3, 50.0))
+        return pressure, -pressure / 1e-3
+
+    solver = SphereSolver(grid, law)
+    (state,) = solver.sweep([1e-6])
+    hertz = np.sqrt(np.maximum(1 - grid.radius**2, 0))
+    assert np.abs(state.pressure - hertz)[np.abs(grid.radius - 1) > 0.05].max() < 0.02
+    assert grid.area @ state.pressure == pytest.approx(LOAD, rel=1e-6)
+    assert grid.area @ law(solver.separation(state))[0] == pytest.approx(LOAD, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def rough_film():
+    """One mixed film of skin: solver, state, λ."""
+    radius, force, modulus = GLASS_BALL
+    hertz = sphere_contact(force, radius, modulus)
+    law = asperity_law(named_surface("paper_reference"), PAPER_SKIN)
+    scaled = law.scaled(float(hertz.contact_radius**2 / radius), float(hertz.maximum_pressure))
+    solver = SphereSolver(polar_grid(36, 20, 0.06, 20.0), scaled)
+    return solver, solver.sweep([0.02])[0], 0.02
+
+
+def test_film_conserves_what_it_should(rough_film):
+    solver, state, number = rough_film
+    grid, film, fluid = solver.grid, solver.separation(state), solver.fluid(state)
+    lost = solver.balance @ solver.flows(film, fluid, number)[0]
+    full = (fluid > 1e-12) & ~grid.rim
+    assert state.residual < 1e-8
+    assert np.abs(lost[full]).max() < 1e-8 * number
+    # the cavity opens: flow that full film would lack, never a surplus
+    assert fluid.min() > -1e-12
+    assert lost[~full & ~grid.rim].min() > -1e-12
+    assert grid.area @ state.pressure == pytest.approx(LOAD, rel=2e-3)  # the rest lies beyond the last ring
+
+
+def test_pressure_flow_is_the_moment_of_the_load(rough_film):
+    # elastic solids and asperities do no work: ∫H ∂P_f/∂x dA = −∫P x dA, but for the far inlet
+    solver, state, number = rough_film
+    grid, x = solver.grid, solver.grid.radius * np.cos(solver.grid.angle)
+    inner = (grid.radius**2 - grid.faces[-2] ** 2) / np.diff(
+        grid.faces[-2:] ** 2
+    )  # flows end in the middle of the rim
+    moment = -(state.pressure * x * grid.area * np.where(grid.rim, inner, 1.0)).sum()
+    border = number * pi / grid.rays * (far_inlet(grid) * np.cos(grid.angle))[grid.rim].sum()
+    _, found = drag_integrals(solver, state, number, grid.faces[-1])
+    assert found == pytest.approx(moment + border, rel=0.02)
+
+
+def test_smooth_films_and_friction_are_those_of_the_regressions():
+    radius, force, modulus = FIGURE_11_BALL
+    products = np.array([1e-3, 1e-2, 1e-1])
+    found = lubricated_sphere(products, radius, force, modulus, None, polar_grid(30, 20, 0.06, 20.0))
+    speed, load = products / 2 / (2 * modulus * radius), force / (2 * modulus * radius**2)
+    # Hamrock & Dowson, J. Lubr. Technol. 100 (1978) 236; the smallest film lies in two lobes beside the middle
+    lowest = 7.43 * (1 - 0.85 * np.exp(-0.31)) * speed**0.65 * load**-0.21 * radius
+    np.testing.assert_allclose(found.minimum_film, lowest, rtol=0.15)
+    # Nijenbanning, Venner & Moes, Wear 176 (1994) 217: from rigid to elastic
+    moes = load * (2 * speed) ** -0.75
+    rigid = 145 * 1.796 ** (-15 / 7) * moes**-2.0
+    elastic = 3.18 * 1.63 ** (-14 / 25) * moes ** (-2 / 15)
+    power = 1.5 * (1 + np.exp(-1.2 * elastic / rigid))
+    bridge = (elastic**-4 + 1.8**-4) ** (-3 * power / 8)
+    central = (rigid ** (1.5 * power) + bridge) ** (2 / (3 * power)) * np.sqrt(2 * speed) * radius
+    np.testing.assert_allclose(found.central_film, central, rtol=0.10)
+    # de Vicente, Stokes & Spikes, Tribol. Lett. 20 (2005) 273, slide-roll ratio 2
+    couette = 2 * (3.8 * speed**0.71 * load**-0.76 + 0.96 * speed**0.36 * load**-0.11)
+    np.testing.assert_allclose(found.couette, couette, rtol=0.15)
+    rolling = 1.46 * speed**0.65 * load**-0.70
+    np.testing.assert_allclose(found.pressure_flow[1:], rolling[1:], rtol=0.25)
+
+
+def accepted(found, bounds):
+    """Print what was found; every number lies in its bounds."""
+    for name, value in found.items():
+        low, high = bounds[name]
+        print(f"{name}: {value:.3f}, accepted {low} to {high}")
+    outside = [name for name, value in found.items() if not bounds[name][0] < value < bounds[name][1]]
+    assert not outside
+    assert found.keys() == bounds.keys()
+
+
+@pytest.mark.slow
+def test_figure_11_sphere_and_cylinder():
+    # the paper: 0.50 for the sphere and 0.47 for the cylinder
+    radius, force, modulus = FIGURE_11_BALL
+    products = np.geomspace(1e-3, 1e-1, 5)
+    sphere = lubricated_sphere(products, radius, force, modulus, None, polar_grid(48, 30, 0.06, 20.0))
+    coarse = lubricated_sphere(products, radius, force, modulus, None, polar_grid(30, 20, 0.06, 20.0))
+    cylinder = cylinder_of_sphere(force, radius, modulus)
+    line = lubricated_films(
+        products, float(cylinder.cylinder_radius), float(cylinder.load_per_length), modulus, nodes=300
+    )
+    here, there, rough_grid = (x.couette + x.pressure_flow for x in (sphere, line, coarse))
+    show(products, sphere, line, here, there)
+    np.testing.assert_allclose(rough_grid, here, rtol=0.01)
+    ratio, films = here / there, sphere.central_film / line.central_film
+    accepted(
+        {
+            "slope of the sphere": np.log(here[-1] / here[0]) / np.log(100),
+            "slope of the cylinder": np.log(there[-1] / there[0]) / np.log(100),
+            "friction at 1e-3 N/m": ratio[0],
+            "friction at 1e-1 N/m": ratio[-1],
+            "central film at 1e-3 N/m": films[0],
+            "central film at 1e-1 N/m": films[-1],
+        },
+        FIGURE_11,
+    )
+
+
+def show(products, sphere, line, here, there):
+    print(
+        "ηv, then sphere and cylinder: μ, Couette, pressure flow, asperity share, central and smallest film in µm"
+    )
+    for k, product in enumerate(products):
+        row = [here[k], there[k]]
+        for name in ("couette", "pressure_flow", "asperity_load_share"):
+            row += [getattr(sphere, name)[k], getattr(line, name)[k]]
+        films = [
+            x
+            for name in ("central_film", "minimum_film")
+            for x in (getattr(sphere, name)[k], getattr(line, name)[k])
+        ]
+        print(f"{product:.2e}", *(f"{x:.5f}" for x in row), *(f"{x * 1e6:.2f}" for x in films))
+
+
+def features(products, friction):
+    """ηv at half of the first value, ηv and μ of the minimum."""
+    fine = np.linspace(np.log(products[0]), np.log(products[-1]), 20001)
+    curve = CubicSpline(np.log(products), np.log(friction))(fine)
+    half = fine[np.argmax(curve < np.log(friction[0] / 2))]
+    return np.exp([half, fine[np.argmin(curve)], curve.min()])
+
+
+def both_curves(products, ball, skin, spectrum, stress, grid):
+    """Films and friction of the sphere, and the Stribeck curve of the cylinder."""
+    radius, force, modulus = ball
+    sphere = lubricated_sphere(products, radius, force, modulus, asperity_law(spectrum, skin), grid)
+    contact = relative_contact_area(sphere.asperity_pressure, stress_variance(spectrum, skin))
+    friction = stress * (contact @ sphere.area) / force + sphere.couette + sphere.pressure_flow
+    line = stribeck_curve(products, radius, force, skin, spectrum, stress, nodes=200)
+    return sphere, friction, line
+
+
+@pytest.mark.slow
+def test_skin_sphere_and_cylinder():
+    products = np.array(
+        [1e-6, 1e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 5e-3, 8e-3, 1.3e-2, 1.9e-2, 2.5e-2, 3.5e-2, 5e-2, 0.1]
+    )
+    case = GLASS_BALL, PAPER_SKIN, named_surface("paper_reference"), 15e6 * 6.59 / 6.48133
+    sphere, friction, line = both_curves(products, *case, polar_grid(48, 30, 0.1, 20.0))
+    show(products, sphere, line, friction, line.friction_coefficient)
+    # half as many cells, and a rim at half the distance
+    _, coarse, _ = both_curves(products, *case, polar_grid(34, 21, 0.1, 20.0))
+    _, near, _ = both_curves(products, *case, polar_grid(40, 30, 0.1, 10.0))
+    np.testing.assert_allclose(coarse, friction, rtol=0.01)
+    np.testing.assert_allclose(near, friction, rtol=0.01)
+    here, there = features(products, friction), features(products, line.friction_coefficient)
+    print("half of the plateau, minimum:", here, there)
+    ratio = friction / line.friction_coefficient
+    accepted(
+        {
+            "plateau": ratio[0],
+            "speed at half of the plateau": here[0] / there[0],
+            "speed of the minimum": here[1] / there[1],
+            "friction at the minimum": here[2] / there[2],
+            "friction at 1e-1 N/m": ratio[-1],
+        },
+        SKIN,
+    )
+
+
+# moduli of tissue and layer in Pa, rms height in m, radius in m, force in N: a/R from 0.08 to 0.6
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("bulk", "layer", "height", "radius", "force"),
+    [
+        (1.1e6, 38e6, 1.8e-6, 6.5e-3, 0.04),
+        (1.3e5, 3.0e6, 1.4e-6, 15e-3, 0.21),
+        (15e3, 49e6, 6.0e-6, 7.9e-3, 0.03),
+        (1.0e5, 3.4e6, 19e-6, 1.1e-3, 0.03),
+        (6.5e3, 1.6e6, 8.8e-6, 6.7e-3, 0.12),
+    ],
+)
+def test_flank_of_other_balls(bulk, layer, height, radius, force):
+    ball, skin = (radius, force, reduced_modulus(bulk, 0.5)), LayeredSkin(layer, bulk, 0.5, 0.5, 20e-6)
+    spectrum = SelfAffineSpectrum(height, 0.78, 1e3, 6.345e3, 1e9)
+    # smooth surfaces would be 0.4 λ^0.6 a²/R apart; from where asperities keep them as far apart on, they lose the load
+    hertz = sphere_contact(*(ball[1], ball[0], ball[2]))
+    rough = asperity_law(spectrum, skin).separation_at(float(hertz.maximum_pressure))
+    middle = (rough * radius / hertz.contact_radius**2 / 0.4) ** (1 / 0.6) / number_of(1.0, *ball)
+    products = middle * np.geomspace(0.2, 10.0, 7)
+    sphere, _, line = both_curves(products, ball, skin, spectrum, 0.0, polar_grid(34, 21, 0.08, 20.0))
+    speeds = []
+    for share in (sphere.asperity_load_share, line.asperity_load_share):
+        assert share[0] > 0.6 > 0.4 > share[-1]
+        (root,) = CubicSpline(np.log(products), share - 0.5).roots(extrapolate=False)
+        speeds.append(np.exp(root))
+    print(
+        f"a/R {hertz.contact_radius / radius:.2f}: half of the load at {speeds[0] / speeds[1]:.3f} of the speed"
+    )
+    assert FLANK[0] < speeds[0] / speeds[1] < FLANK[1]
+
+
+def rectangles(finest, end):
+    """Cells between lines, equally spaced to 1.25 and stretched to ``end``, with the deflections of Love's formula."""
+    lines, step = [0.0], finest
+    while lines[-1] < end:
+        step *= 1.18 if lines[-1] > 1.25 else 1.0
+        lines.append(lines[-1] + step)
+    beside = np.array(lines)
+    along = np.append(-beside[:0:-1], beside)
+    middle, aside = (along[1:] + along[:-1]) / 2, (beside[1:] + beside[:-1]) / 2
+    x, y = (z.ravel() for z in np.meshgrid(middle, aside, indexing="ij"))
+
+    def love(edges):
+        p, q = along[:, None] - x[:, None, None], edges - y[:, None, None]
+        corner = p * np.arcsinh(q / np.abs(p)) + q * np.arcsinh(p / np.abs(q))
+        return 2 / pi**2 * np.diff(np.diff(corner, axis=1), axis=2)
+
+    kernel = love(beside) + love(-beside[::-1])[:, :, ::-1]
+    shape = middle.size, aside.size
+    index = np.arange(x.size).reshape(shape)
+    wide, high = np.diff(along), np.diff(beside)
+    walls, floors = np.tile(high, shape[0] - 1), np.repeat(wide, shape[1] - 1)
+    rim = np.ones(shape, dtype=bool)
+    rim[1:-1, :-1] = False
+    return PolarGrid(
+        faces=np.array([0.0, end]),
+        rays=int(rim.sum()),
+        radius=np.hypot(x, y),
+        angle=np.arctan2(y, x),
+        area=2 * np.outer(wide, high).ravel(),
+        kernel=kernel.reshape(x.size, x.size),
+        left=np.append(index[:-1], index[:, :-1]),
+        right=np.append(index[1:], index[:, 1:]),
+        distance=np.append(np.repeat(np.diff(middle), shape[1]), np.tile(np.diff(aside), shape[0])),
+        width=np.append(walls, floors),
+        width_along=np.append(walls, np.zeros(floors.size)),
+        rim=rim.ravel(),
+    )
+
+
+@pytest.mark.slow
+def test_rings_and_rectangles_agree(rough_film):
+    fine, state, number = rough_film
+
+    def summary(solver, film):
+        """Share of the load that asperities carry, ∫dA/H and the load's moment over the contact."""
+        grid, h = solver.grid, solver.separation(film)
+        near = grid.area * (grid.radius < 1)
+        carried = grid.area @ solver.law(h)[0] / LOAD
+        return np.array([carried, near @ (1 / h), near @ film.pressure])
+
+    found = []
+    for finest in (0.125, 0.0625 * 1.25):
+        solver = SphereSolver(rectangles(finest, 8.0), fine.law)
+        found.append(summary(solver, solver.sweep([number])[0]))
+    # errors go as the square of the cells' width
+    square = (0.125 / (0.0625 * 1.25)) ** 2
+    extrapolated = (square * found[1] - found[0]) / (square - 1)
+    rings = summary(fine, state)
+    print(found, extrapolated, rings)
+    np.testing.assert_allclose(extrapolated, rings, rtol=0.02)
