@@ -100,7 +100,7 @@ def _show_model(name: str, as_json: bool) -> None:
     click.echo(f"{spec.title}\n\n{spec.description}\n")
     click.echo(f"forward model: {spec.forward} – {problem.forward.summary}")
     click.echo(
-        f"data set:      {spec.dataset or 'none (predict only)'}"
+        f"data set:      {spec.dataset or ('yours, with --data' if spec.observables else 'none (predict only)')}"
         + (f", rows {spec.rows}" if spec.rows else "")
     )
     for observable, noise in spec.noise.items():

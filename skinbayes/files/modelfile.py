@@ -30,8 +30,8 @@ class ModelSpec:
     path : the file
     text : the file as it stands
     title, description, forward : as written
-    dataset, rows, observables : the data set (shipped key or path), the rows kept, the columns explained; None or empty for a
-        model without data
+    dataset, rows, observables : the data set (shipped key or path; None if the user brings it), the rows kept, the columns
+        explained (empty for a model without data)
     spread, input_spread : whether spread columns of the observables, and of the inputs, are used; None if not said
     surface_name, surface_file : named surface or tabulated spectrum
     parameters : parameters of the forward model, fixed and free
@@ -123,7 +123,9 @@ def load_model(name: str | Path) -> ModelSpec:
     covariates, exponents = read_covariates(block.covariates, where)
 
     def resolved(table: DataBlock | RheologyBlock | None) -> str | None:
-        return None if table is None else table.dataset or str((path.parent / str(table.file)).resolve())
+        if table is None or table.file is None:
+            return None if table is None else table.dataset
+        return str((path.parent / table.file).resolve())
 
     rheology = block.rheology
     if rheology is not None and rheology.by not in LABELS:

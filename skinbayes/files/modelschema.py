@@ -19,7 +19,7 @@ def _one_of_two(first: object, second: object, first_name: str, second_name: str
 
 
 class DataBlock(_Strict):
-    """``[data]``: which rows of which data set, and what of it the model explains."""
+    """``[data]``: which rows of which data set, and what of it the model explains; no data set if the user brings one."""
 
     dataset: str | None = None
     file: str | None = None
@@ -31,7 +31,8 @@ class DataBlock(_Strict):
 
     @model_validator(mode="after")
     def _one_source(self) -> DataBlock:
-        _one_of_two(self.dataset, self.file, "'dataset' (a shipped data set)", "'file' (the path of a CSV)")
+        if self.dataset is not None and self.file is not None:
+            raise ValueError("give 'dataset' (a shipped data set) or 'file' (the path of a CSV), not both")
         return self
 
     @model_validator(mode="after")

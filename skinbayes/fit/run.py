@@ -77,6 +77,10 @@ def sample(
     from skinbayes.sampling.options import SamplerOptions
     from skinbayes.sampling.store import SampleStore
 
+    if not problem.observations and problem.spec.observables:
+        raise InputError(
+            f"{problem.spec.path}: '{problem.name}' explains data that you bring; give them with --data FILE.csv"
+        )
     if not problem.observations or problem.dimension == 0:
         raise InputError(
             f"{problem.spec.path}: nothing to infer: the model needs [data] and at least one prior"

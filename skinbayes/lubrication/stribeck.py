@@ -38,7 +38,8 @@ THICKEST_FILM = 0.5
 class StribeckCurve:
     """Friction of a lubricated ball and what it consists of; all but ``strain`` have the batch shape plus that of the speeds.
 
-    Where a flag of validity is raised the numbers are nan; ``strained``, ``largely_strained`` and ``shear_rate_unmeasured`` only warn.
+    Where a flag of validity is raised the numbers are nan; ``strained``, ``largely_strained`` and ``shear_rate_unmeasured``
+    only warn.
 
     Attributes
     ----------

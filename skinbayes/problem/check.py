@@ -102,7 +102,11 @@ def _setup(problem: Problem) -> tuple[str, ...]:
                 f"There are more free parameters ({free}) than data ({rows}): the priors decide what remains open."
             )
     else:
-        said.append("It has no data: it serves 'predict' only.")
+        said.append(
+            "It has no data here: give yours with --data FILE.csv."
+            if problem.spec.observables
+            else "It has no data: it serves 'predict' only."
+        )
     return tuple(said)
 
 

@@ -77,6 +77,13 @@ def load_problem(
         if data is not None:
             raise InputError(f"{spec.path}: the model has no [data] block, so data cannot be given to it")
         bound = default_rows(spec, taken)
+    elif spec.dataset is None and data is None:
+        if not spec.conditions:
+            raise InputError(
+                f"{spec.path}: '{spec.name}' explains data that you bring: give them with --data FILE.csv "
+                f"('skinbayes template {spec.name}' writes the header of such a file)"
+            )
+        bound = default_rows(spec, taken)
     else:
         dataset = _dataset(spec, data)
         bound, observations = data_rows(spec, forward, dataset, taken)

@@ -97,9 +97,8 @@ class Problem:
         Raises :class:`InputError` if the model has no data.
         """
         if not self.observations:
-            raise InputError(
-                f"{self.spec.path}: the model '{self.name}' has no data; it serves 'predict' only"
-            )
+            hint = "give them with --data FILE.csv" if self.spec.observables else "it serves 'predict' only"
+            raise InputError(f"{self.spec.path}: the model '{self.name}' has no data; {hint}")
         return tuple(observation.name for observation in self.observations)
 
     @property

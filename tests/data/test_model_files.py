@@ -238,9 +238,9 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
         edited('dataset = "fehlberg2025-finger-stribeck"', 'file = "no such.csv"'), ("no such.csv", "existing file"),
     ),
     "data twice": (
-        edited('dataset = "fehlberg2025-finger-stribeck"', 'dataset = "x"\nfile = "y.csv"'), ("either 'dataset'",),
+        edited('dataset = "fehlberg2025-finger-stribeck"', 'dataset = "x"\nfile = "y.csv"'), ("not both",),
     ),
-    "no data": (edited('dataset = "fehlberg2025-finger-stribeck"\n', ""), ("either 'dataset'",)),
+    "no data": (edited('dataset = "fehlberg2025-finger-stribeck"\n', ""), ("--data", "template")),
     "unknown observable": (
         edited('"friction_coefficient"', '"friction_coeficient"'), ("friction_coeficient", "'friction_coefficient'"),
     ),
