@@ -84,6 +84,8 @@ class ForwardModel:
     evaluate : ``(inputs, tables) -> {observable: (B, N)}``
     derived : quantities between inputs and observables (``rms_slope``, ``nominal_pressure``), same calling convention
     profiles : curves for plots
+    abscissa : abscissa of the first profile for inputs that broadcast to ``(B, N)``, where it is none of the inputs but
+        follows from them (viscosity times speed), or None; data are drawn against it
     validate : raises InputError saying in words which inputs cannot be (evaluation itself gives NaN), or None
     explain : sentences on why predictions are missing (NaN) or doubtful, or None
     flags : ``(inputs, tables) -> {flag: (B, N)}``, true where a prediction is at the edge of what the theory can say, or None
@@ -113,6 +115,7 @@ class ForwardModel:
     flag_meanings: Mapping[str, str] = field(default_factory=dict)
     prepare: Callable[[Ranges, Tables, Progress | None], ForwardModel] | None = None
     accuracy: str = ""
+    abscissa: Callable[[Inputs, Tables], FloatArray] | None = None
     uses_flow_curves: bool = False
 
     def required_names(self) -> tuple[str, ...]:
