@@ -58,6 +58,7 @@ HOMES: dict[str, set[str]] = {
     "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "vocabulary"},
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
+    "platformdirs": {"forward"},
     "pydantic": {"files"},
     "rich": {"cli"},
     "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot"},
