@@ -7,7 +7,18 @@ from skinbayes.lubrication.asperities import (
     asperity_table,
     law_of_table,
 )
+from skinbayes.lubrication.effective_viscosity import EffectiveViscosity, stribeck_curve_of_liquid
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_axes
+from skinbayes.lubrication.film_table import FilmTable
+from skinbayes.lubrication.film_table_build import build_film_table
+from skinbayes.lubrication.film_table_evaluation import (
+    TabulatedFriction,
+    tabulated_friction,
+    tabulated_friction_of_liquids,
+)
+from skinbayes.lubrication.film_table_key import film_table_key
+from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import (
     FlowFactors,
     FrictionFactors,
@@ -31,6 +42,7 @@ from skinbayes.lubrication.stribeck import (
 )
 
 __all__ = [
+    "FILM_PARAMETERS",
     "LARGEST_STRAIN",
     "LARGE_STRAIN",
     "NODES",
@@ -38,23 +50,35 @@ __all__ = [
     "THICKEST_FILM",
     "AsperityLaw",
     "AsperityTable",
+    "EffectiveViscosity",
+    "FilmAxes",
+    "FilmTable",
     "FlowCurve",
     "FlowFactors",
     "FrictionFactors",
     "GapFactors",
+    "LiquidRows",
     "LubricatedFilms",
     "PatirCheng",
     "Rheology",
     "ShearThinning",
     "StribeckCurve",
     "TabulatedFlowFactors",
+    "TabulatedFriction",
     "TrivialFlowFactors",
     "asperity_law",
     "asperity_table",
+    "build_film_table",
+    "film_axes",
+    "film_table_key",
     "gap_flow_factors",
     "law_of_table",
+    "liquid_rows",
     "lubricated_films",
     "stribeck_curve",
+    "stribeck_curve_of_liquid",
     "tabulated_flow_factors",
+    "tabulated_friction",
+    "tabulated_friction_of_liquids",
     "thinned_viscosity",
 ]

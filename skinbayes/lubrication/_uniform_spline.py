@@ -1,0 +1,79 @@
+"""Cubic splines on evenly spaced points, by their B-spline coefficients."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+
+_ENDS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # no jump of the third derivative at the point before the end
+
+
+def spline_coefficients(values: FloatArray) -> FloatArray:
+    """Coefficients, shape ``(..., S + 2)``, of the spline through values at S ≥ 3 points along the last axis."""
+    return np.ascontiguousarray(values @ _inverse(values.shape[-1]).T)
+
+
+@lru_cache(maxsize=16)
+def _inverse(count: int) -> FloatArray:
+    matrix = np.zeros((count + 2, count + 2))
+    places = np.arange(count)
+    for shift, weight in enumerate((1 / 6, 4 / 6, 1 / 6)):
+        matrix[places, places + shift] = weight
+    matrix[count, :5], matrix[count + 1, -5:] = _ENDS, _ENDS
+    return np.ascontiguousarray(np.linalg.inv(matrix)[:, :count])
+
+
+def cell_of(position: FloatArray, count: int) -> tuple[NDArray[np.intp], FloatArray]:
+    """Cell 0 … S − 2 and place 0 … 1 in it, of positions 0 … S − 1 counted in spacings."""
+    cell = position.astype(np.intp)
+    np.minimum(cell, count - 2, out=cell)
+    return cell, position - cell
+
+
+def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Weights of the four coefficients from that of the cell on."""
+    rest = 1 - place
+    first = rest * rest * rest / 6
+    last = place * place * place / 6
+    # second and third by symmetry: (4 − 6u² + 3u³)/6
+    second = 2 / 3 - place * place + 3 * last
+    return first, second, 1 - first - second - last, last
+
+
+def cubic_slopes(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Derivatives of the weights by the position."""
+    rest = 1 - place
+    first, last = rest * rest / -2, place * place / 2
+    second = place * (1.5 * place - 2)
+    return first, second, -first - second - last, last
+
+
+def gather(
+    coefficients: FloatArray, start: NDArray[np.intp], offset: int, weights: tuple[FloatArray, ...]
+) -> FloatArray:
+    """Sum of four weighted coefficients of a flat array, from ``start + offset`` on."""
+    total = weights[0] * coefficients[offset:].take(start)
+    for shift in (1, 2, 3):
+        total += weights[shift] * coefficients[offset + shift :].take(start)
+    return total
+
+
+def gather_both(
+    coefficients: FloatArray,
+    start: NDArray[np.intp],
+    offset: int,
+    weights: tuple[FloatArray, ...],
+    slopes: tuple[FloatArray, ...],
+) -> tuple[FloatArray, FloatArray]:
+    """The sums of `gather` for two sets of weights."""
+    found = coefficients[offset:].take(start)
+    total, rate = weights[0] * found, slopes[0] * found
+    for shift in (1, 2, 3):
+        found = coefficients[offset + shift :].take(start)
+        total += weights[shift] * found
+        rate += slopes[shift] * found
+    return total, rate

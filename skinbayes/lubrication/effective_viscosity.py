@@ -1,0 +1,149 @@
+"""Viscosity of a liquid at the shear rate of the film that it makes, with the direct film solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.correction import AREA_CORRECTION
+from skinbayes.contact.layered import LayeredSkin, reduced_modulus
+from skinbayes.contact.line_contact import cylinder_of_sphere
+from skinbayes.errors import InputError
+from skinbayes.lubrication.asperities import asperity_law
+from skinbayes.lubrication.film import NODES, lubricated_films
+from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
+from skinbayes.lubrication.flow_factors import FlowFactors
+from skinbayes.lubrication.rheology import FlowCurve
+from skinbayes.lubrication.stribeck import StribeckCurve, stribeck_curve
+from skinbayes.roughness.spectrum import PowerSpectrum
+
+_ROUNDS, _CLOSE = 60, 1e-7  # of the iteration for ln η
+
+
+class EffectiveViscosity(NamedTuple):
+    """Viscosity of liquids at the shear rate of the film they make; arrays of the broadcast shape of the arguments.
+
+    Attributes
+    ----------
+    viscosity : η(v/u), Pa s
+    shear_rate : v/u with the mean separation u under the middle of the ball, 1/s
+    unmeasured : the shear rate lies outside those that were measured, and the viscosity is that at the nearer end
+    """
+
+    viscosity: FloatArray
+    shear_rate: FloatArray
+    unmeasured: NDArray[np.bool_]
+
+
+def stribeck_curve_of_liquid(
+    sliding_speed: ArrayLike,
+    flow_curve: FlowCurve,
+    sphere_radius: float,
+    normal_force: float,
+    skin: LayeredSkin,
+    spectrum: PowerSpectrum,
+    frictional_shear_stress: float,
+    area_correction: float = AREA_CORRECTION,
+    velocity_shift_factor: float = 1.0,
+    flow_factors: FlowFactors | None = None,
+    nodes: int = NODES,
+) -> tuple[StribeckCurve, EffectiveViscosity]:
+    """Stribeck curve of a liquid of measured flow curve, with one viscosity for the whole film (Appendix C of the paper).
+
+    The viscosity is that at the shear rate v/u under the middle of the ball: ``u = u(a η(v/u) v)``, solved for each speed by
+    false position (Illinois) on ln η between the extremes of the flow curve.
+
+    Parameters
+    ----------
+    sliding_speed : v, m/s, > 0, shape ``(K,)``
+    flow_curve : η against shear rate; outside the measured rates the viscosity at the nearer end is used
+    sphere_radius : R, m, > 0
+    normal_force : F_N, N, > 0
+    skin : moduli in Pa, thickness in m, one skin
+    spectrum : power spectrum, C in m^4, one surface
+    frictional_shear_stress : σ_f, Pa, ≥ 0
+    area_correction : γ, dimensionless, 0 < γ ≤ 1
+    velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
+    flow_factors : of the flow between rough surfaces; None for trivial ones
+    nodes : number of places across the contact, dimensionless
+
+    Returns
+    -------
+    curve : `StribeckCurve` at ηv with the viscosity found, ``shear_rate_unmeasured`` as in `viscosity`
+    viscosity : `EffectiveViscosity`, nan where there is no film
+
+    Raises
+    ------
+    InputError
+        if a speed is not a finite number > 0
+
+    Notes
+    -----
+    See `tabulated_friction_of_liquids` for when the solution is the only one. How far one viscosity is from the local one
+    at every place of the film (``rheology`` of `stribeck_curve`), for the liquids of Fehlberg et al. (2025) between 1 mm/s
+    and 1 m/s, is stated there.
+
+    References
+    ----------
+    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6, Appendix C).
+    """
+    speed = np.atleast_1d(np.asarray(sliding_speed, dtype=np.float64))
+    wrong = np.flatnonzero(~(np.isfinite(speed) & (speed > 0)))
+    if wrong.size:
+        raise InputError(
+            f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number > 0 m/s."
+        )
+    liquids = liquid_rows([flow_curve] * speed.size)
+    modulus = float(reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk))
+    cylinder = cylinder_of_sphere(normal_force, sphere_radius, modulus)
+    law = asperity_law(spectrum, skin, area_correction)
+
+    def shear_rate(log_viscosity: FloatArray) -> FloatArray:
+        """ln v/u."""
+        products = np.exp(log_viscosity) * speed * velocity_shift_factor
+        films = lubricated_films(
+            products, float(cylinder.cylinder_radius), float(cylinder.load_per_length), modulus, law, flow_factors, nodes=nodes
+        )  # fmt: skip
+        return np.asarray(np.log(speed / films.central_film))
+
+    log_viscosity = _fixed_point(shear_rate, liquids)
+    rate = np.exp(shear_rate(log_viscosity))
+    curve = stribeck_curve(
+        np.exp(log_viscosity) * speed, sphere_radius, normal_force, skin, spectrum, frictional_shear_stress, area_correction,
+        velocity_shift_factor, flow_factors, nodes=nodes,
+    )  # fmt: skip
+    good = np.isfinite(curve.friction_coefficient)
+    unmeasured = good & ~liquids.measured(rate)
+    viscosity = np.where(good, np.exp(log_viscosity), np.nan)
+    found = EffectiveViscosity(viscosity, np.where(good, rate, np.nan), unmeasured)
+    return replace(curve, shear_rate_unmeasured=unmeasured), found
+
+
+def _fixed_point(shear_rate: Callable[[FloatArray], FloatArray], liquids: LiquidRows) -> FloatArray:
+    """ln η that agrees with its own ln shear rate, by false position (Illinois) from the extremes of each liquid."""
+
+    def miss_at(place: FloatArray) -> FloatArray:
+        return liquids.log_viscosity(shear_rate(place))[0] - place
+
+    low, high = liquids.least.copy(), liquids.most.copy()
+    at_low, at_high = miss_at(low), miss_at(high)
+    side = np.zeros(low.shape)
+    for _ in range(_ROUNDS):
+        fall = at_low - at_high
+        with np.errstate(invalid="ignore", divide="ignore"):
+            place = np.where(fall > 0, (high * at_low - low * at_high) / fall, high)
+        miss = miss_at(place)
+        if np.nanmax(np.abs(miss), initial=0.0) < _CLOSE:
+            break
+        above = miss > 0
+        # the value at an end that stays twice is halved
+        at_high = np.where(above, np.where(side > 0, at_high / 2, at_high), miss)
+        at_low = np.where(above, miss, np.where(side < 0, at_low / 2, at_low))
+        low, high = np.where(above, place, low), np.where(above, high, place)
+        side = np.where(above, 1.0, -1.0)
+    return place

@@ -1,0 +1,231 @@
+"""A table of films at given parameters: the axes summed up, functions of the speed left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.lubrication._uniform_spline import (
+    cell_of,
+    cubic_slopes,
+    cubic_weights,
+    gather,
+    gather_both,
+)
+from skinbayes.lubrication.film_axes import Scales, film_scales
+from skinbayes.lubrication.film_reference import SmoothFilms
+from skinbayes.lubrication.film_table import ANCHORS, FASTEST, SLOWEST, FilmTable
+
+CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE = range(6)
+_REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
+_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, SHARE: 0.0}
+"""Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContractedFilms:
+    """Films of B parameter vectors with N rows each as functions of ln λ.
+
+    Attributes
+    ----------
+    flat : coefficients of all vectors and rows one after the other, dimensionless
+    start : where those of each vector and row begin, shape ``(B, 1)`` or ``(B, N)``
+    anchor, unit : ln λ that speeds are counted from and their unit, dimensionless, shape ``(B, 1)`` or ``(B, N)``
+    speeds : number of speeds, dimensionless
+    smooth : films of the smooth ball
+    scales : of the contact, shape ``(B, 1)`` or ``(B, N)`` each
+    inside : where the table holds the parameters
+    """
+
+    flat: FloatArray
+    start: NDArray[np.intp]
+    anchor: FloatArray
+    unit: FloatArray
+    speeds: int
+    smooth: SmoothFilms
+    scales: Scales
+    inside: NDArray[np.bool_]
+
+    def points(self, shape: tuple[int, int]) -> ContractedFilms:
+        """The same for vectors and rows of the given shape one after the other, as arrays of one axis."""
+        return self._mapped(lambda array: np.broadcast_to(array, shape).reshape(-1))
+
+    def chosen(self, places: NDArray[np.intp]) -> ContractedFilms:
+        """Some of the points."""
+        return self._mapped(lambda array: array.take(places))
+
+    def _mapped(self, function: Callable[[Any], Any]) -> ContractedFilms:
+        names = ("start", "anchor", "unit", "inside")
+        scales = Scales(*(function(scale) for scale in self.scales))
+        return replace(self, scales=scales, **{name: function(getattr(self, name)) for name in names})
+
+    def log_outputs(self, log_number: FloatArray, outputs: Sequence[int]) -> list[FloatArray]:
+        """ln of some outputs at ln λ of shape ``(B, N)``; of shape ``(P,)`` for points."""
+        return self._evaluate(log_number, outputs, slope=False)
+
+    def log_central_film(self, log_number: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """ln H under the middle of the ball and its derivative by ln λ, at ln λ of shape ``(B, N)`` or ``(P,)``."""
+        value, slope = self._evaluate(log_number, (CENTRAL,), slope=True)
+        return value, slope
+
+    def _evaluate(self, log_number: FloatArray, outputs: Sequence[int], slope: bool) -> list[FloatArray]:
+        count = self.speeds
+        per_unit = (count - 1) / (FASTEST - SLOWEST)
+        position = ((log_number - self.anchor) / self.unit - SLOWEST) * per_unit
+        held = np.minimum(np.maximum(position, 0.0), count - 1.0)
+        cell, place = cell_of(held, count)
+        start = self.start + cell
+        weights, slopes = cubic_weights(place), cubic_slopes(place) if slope else ()
+        ends = _Ends(self, position, log_number)
+        references = [_REFERENCE[output] for output in outputs if output in _REFERENCE]
+        smooth = iter(self._smooth(ends.held_number, references, slope))
+        found: list[FloatArray] = []
+        for output in outputs:
+            offset = ANCHORS + output * (count + 2)
+            rate: FloatArray | None = None
+            if slope:
+                value, rate = gather_both(self.flat, start, offset, weights, slopes)
+                rate *= per_unit / self.unit
+            else:
+                value = gather(self.flat, start, offset, weights)
+            if output in _REFERENCE:
+                value += next(smooth)
+                if rate is not None:
+                    rate += next(smooth)
+            found.extend(ends.continued(output, value, rate))
+        return found
+
+    def _smooth(self, log_number: FloatArray, references: list[int], slope: bool) -> list[FloatArray]:
+        if not references:
+            return []
+        wanted = range(references[0], references[-1] + 1)
+        parts = self.smooth(log_number, wanted, slope)
+        each = 2 if slope else 1
+        return [parts[(reference - wanted[0]) * each + i] for reference in references for i in range(each)]
+
+
+class _Ends:
+    """Continuation beyond the slowest and the fastest speed of a table.
+
+    Slow: the fluid acts in proportion to λ, so that ``ln Y = ln Y0 + s ΔL + (Y0′ − s)(e^ΔL − 1)`` with the limiting power s.
+    Fast: boundary term and load share fall on with the slope they have; the others are those of the smooth ball.
+    """
+
+    def __init__(self, films: ContractedFilms, position: FloatArray, log_number: FloatArray) -> None:
+        self.films = films
+        self.slow = np.nonzero(position < 0)
+        self.fast = np.nonzero(position > films.speeds - 1)
+        self.held_number = log_number
+        self.shape = position.shape
+        self.per_unit = (films.speeds - 1) / (FASTEST - SLOWEST)
+        if self.slow[0].size:
+            first = np.broadcast_to(films.anchor + films.unit * SLOWEST, self.shape)[self.slow]
+            self.held_number = log_number.copy()
+            self.held_number[self.slow] = first
+            self.below = log_number[self.slow] - first
+        if self.fast[0].size:
+            last = np.broadcast_to(films.anchor + films.unit * FASTEST, self.shape)[self.fast]
+            self.above = log_number[self.fast] - last
+
+    def continued(self, output: int, value: FloatArray, rate: FloatArray | None) -> list[FloatArray]:
+        if self.slow[0].size:
+            power = _POWER[output]
+            growth = np.exp(self.below)
+            bend = self._rate(output, self.slow, 0) - power
+            value[self.slow] += power * self.below + bend * (growth - 1)
+            if rate is not None:
+                rate[self.slow] = power + bend * growth
+        if self.fast[0].size and output not in _REFERENCE:
+            value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
+        return [value] if rate is None else [value, rate]
+
+    def _rate(self, output: int, where: tuple[NDArray[np.intp], ...], point: int) -> FloatArray:
+        """Derivative by ln λ at the first or last speed, of chosen places."""
+        films = self.films
+        start = (
+            np.broadcast_to(films.start, self.shape)[where] + ANCHORS + output * (films.speeds + 2) + point
+        )
+        unit = np.broadcast_to(films.unit, self.shape)[where]
+        rate = (films.flat.take(start + 2) - films.flat.take(start)) / 2 * self.per_unit / unit
+        if output in _REFERENCE:
+            at = np.broadcast_to(films.anchor + films.unit * (SLOWEST if point == 0 else FASTEST), self.shape)
+            reference = _REFERENCE[output]
+            rate = rate + films.smooth(at[where], range(reference, reference + 1), slope=True)[1]
+        return np.asarray(rate)
+
+
+def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: int) -> ContractedFilms:
+    """Sum up the axes of a table for B parameter vectors.
+
+    Parameters
+    ----------
+    table : `FilmTable`
+    log_parameters : ln of the parameters, SI, each of shape ``(B, 1)`` or ``(B, N)``
+    outputs : how many of the outputs are wanted, from the first on, dimensionless
+
+    Returns
+    -------
+    films : `ContractedFilms`; the parameters outside the table are taken as those of its middle, and marked
+
+    Notes
+    -----
+    Axes that are the same in all rows of a vector come first. Every vector has matrix products of its own, of the same
+    shapes whatever the batch, so that its numbers do not depend on the others.
+    """
+    axes = table.axes
+    vectors = log_parameters[0].shape[0]
+    inside = axes.contains(log_parameters)
+    columns = ANCHORS + outputs * (table.speeds + 2)
+    coordinates = axes.coordinates(log_parameters)
+    common = [place for place, part in enumerate(coordinates) if part.shape[1] == 1]
+    rows = [place for place, part in enumerate(coordinates) if part.shape[1] > 1]
+    coefficients = table.coefficients[..., :columns]
+    order = common + rows
+    if order != sorted(order):
+        coefficients = np.ascontiguousarray(np.transpose(coefficients, (*order, len(order))))
+    counts = axes.counts
+    held = [
+        np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in coordinates
+    ]  # nan fails the comparison too
+    in_common = int(np.prod([counts[place] for place in common], dtype=int))
+    block = coefficients.reshape(in_common, -1, columns)
+    matrix = block[:, 0] if block.shape[1] == 1 else np.ascontiguousarray(block).reshape(in_common, -1)
+    weights = _weights([held[place] for place in common], [counts[place] for place in common], vectors, 1)
+    found = np.matmul(weights, matrix)  # (B, 1, rows' nodes × columns)
+    if rows:
+        number = coordinates[rows[0]].shape[1]
+        weights = _weights(
+            [held[place] for place in rows], [counts[place] for place in rows], vectors, number
+        )
+        found = np.matmul(weights, found.reshape(vectors, -1, columns))
+    flat = found.reshape(-1)
+    start = np.arange(0, flat.size, columns).reshape(vectors, -1)
+    return ContractedFilms(
+        flat,
+        start,
+        flat.take(start),
+        flat.take(start + 1),
+        table.speeds,
+        table.smooth,
+        film_scales(log_parameters, table.poisson_ratio_bulk),
+        inside,
+    )
+
+
+def _weights(coordinates: list[FloatArray], counts: list[int], vectors: int, rows: int) -> FloatArray:
+    """Products of Chebyshev polynomials, shape ``(B, rows, product of counts)``."""
+    weights = np.ones((vectors, rows, 1))
+    for coordinate, count in zip(coordinates, counts, strict=True):
+        terms = np.empty((vectors, rows, count))
+        terms[..., 0] = 1.0
+        if count > 1:
+            terms[..., 1] = coordinate
+        for degree in range(2, count):
+            terms[..., degree] = 2 * coordinate * terms[..., degree - 1] - terms[..., degree - 2]
+        weights = (weights[..., :, None] * terms[..., None, :]).reshape(vectors, rows, -1)
+    return weights

@@ -1,0 +1,246 @@
+"""Building a table of films: direct solutions at Chebyshev nodes of the axes, and a check at random places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import partial
+from itertools import product
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.contact.correction import AREA_CORRECTION
+from skinbayes.lubrication._uniform_spline import spline_coefficients
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_axes, film_scales
+from skinbayes.lubrication.film_contraction import contract
+from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_sweeps import Ball, Material, Progress, Surface, ball_at
+from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
+from skinbayes.lubrication.film_table_evaluation import tabulated_friction
+from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM
+from skinbayes.roughness.spectrum import PowerSpectrum
+
+SPEEDS = 31
+"""Speeds of a table unless told otherwise."""
+
+TABLE_NODES = 80
+"""Places across the contact of the solutions in a table: friction is then within 0.25 % of that on many more."""
+
+CHECKED = 120
+"""Random places at which a table is checked unless told otherwise."""
+
+_ANCHOR_COUNT = (
+    5  # nodes of an axis, at most, at which the anchors are found; between them they are polynomials
+)
+_CHECK_NODES = 128
+
+
+def build_film_table(
+    ranges: Mapping[str, tuple[float, float]],
+    spectrum: PowerSpectrum,
+    poisson_ratio_layer: float = 0.5,
+    poisson_ratio_bulk: float = 0.5,
+    area_correction: float = AREA_CORRECTION,
+    counts: Mapping[str, int] | None = None,
+    speeds: int = SPEEDS,
+    nodes: int = TABLE_NODES,
+    checked: int = CHECKED,
+    processes: int = 1,
+    progress: Progress | None = None,
+) -> FilmTable:
+    """Table of the films under a ball on rough layered skin for parameters within ranges (Sect. 6 of the paper).
+
+    Parameters
+    ----------
+    ranges : smallest and largest value of each of the `FILM_PARAMETERS`, SI (Pa, m, N); equal for a fixed one
+    spectrum : power spectrum of one surface, C in m^4; its shape counts, the rms height comes from the ranges
+    poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless
+    area_correction : γ, dimensionless, 0 < γ ≤ 1
+    counts : nodes of an axis, dimensionless, by its name; see `film_axes`
+    speeds : number of speeds, dimensionless
+    nodes : places across the contact, dimensionless
+    checked : number of random places, dimensionless, at which the table is compared with direct solutions
+    processes : how many solve at once, dimensionless
+    progress : told the number of sweeps that are done and of all
+
+    Returns
+    -------
+    table : `FilmTable`
+
+    Raises
+    ------
+    InputError
+        if a range is wrong, or if no film is found at a node
+
+    References
+    ----------
+    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6).
+    """
+    surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
+    axes = film_axes(ranges, poisson_ratio_bulk, LARGEST_STRAIN, counts, surface.stress_scale(ranges))
+    coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
+    places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
+    sweeps = len(places) + len(coarse_places) + checked
+    say = _Counter(sweeps, progress)
+    materials = _Materials(surface)
+
+    with _solver(processes) as solve:
+        balls = (materials.ball(axes.representative(place)) for place in coarse_places)
+        anchors = np.array([say(found) for found in solve(Ball.anchors, balls)])
+        anchor_terms = _pad(chebyshev_coefficients(anchors.reshape(*coarse, 2)), axes.counts)
+        at_nodes = _values_at(anchor_terms, places)
+
+        grid = np.linspace(SLOWEST, FASTEST, speeds)
+        numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
+        balls = (materials.ball(axes.representative(place)) for place in places)
+        outputs = np.array(
+            [say(found) for found in solve(partial(_outputs, nodes=nodes), zip(balls, numbers, strict=True))]
+        )
+        smooth = smooth_films()
+        for output, reference in zip((0, 2, 3, 4), smooth(numbers, range(4)), strict=True):
+            outputs[:, output] -= reference
+        splines = spline_coefficients(outputs)
+        # at the last speeds the ball is smooth to 1e-4: exactly so from there on
+        splines[:, (0, 2, 3, 4), -3:] = 0.0
+        terms = chebyshev_coefficients(splines.reshape(*axes.counts, -1))
+        table = FilmTable(
+            axes,
+            np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
+            speeds,
+            smooth,
+            poisson_ratio_bulk,
+            np.full(3, np.nan),
+            checked,
+        )
+        return replace(table, held_out=_check(table, materials, checked, say, solve)) if checked else table
+
+
+def chebyshev_coefficients(values: FloatArray) -> FloatArray:
+    """Coefficients along all axes but the last, from values at `chebyshev_nodes`."""
+    for axis in range(values.ndim - 1):
+        count = values.shape[axis]
+        angle = np.pi * (np.arange(count) + 0.5) / count
+        transform = np.cos(np.arange(count)[:, None] * angle) * 2 / count
+        transform[0] /= 2
+        values = np.moveaxis(np.tensordot(transform, values, axes=(1, axis)), 0, axis)
+    return np.ascontiguousarray(values)
+
+
+def chebyshev_nodes(count: int) -> FloatArray:
+    """Zeros of the Chebyshev polynomial of degree ``count``, −1 … 1, dimensionless."""
+    return np.asarray(np.cos(np.pi * (np.arange(count) + 0.5) / count))
+
+
+def _nodes_of(counts: tuple[int, ...]) -> FloatArray:
+    """All combinations of the nodes, shape ``(M, A)``."""
+    return np.array(list(product(*(chebyshev_nodes(count).tolist() for count in counts)))).reshape(
+        -1, len(counts)
+    )
+
+
+def _pad(terms: FloatArray, counts: tuple[int, ...]) -> FloatArray:
+    return np.pad(
+        terms, [(0, count - size) for count, size in zip(counts, terms.shape[:-1], strict=True)] + [(0, 0)]
+    )
+
+
+def _values_at(terms: FloatArray, places: FloatArray) -> FloatArray:
+    """Values of Chebyshev series at places of shape ``(M, A)``, shape ``(M, columns)``."""
+    values = np.broadcast_to(terms, (len(places), *terms.shape))
+    for axis in range(places.shape[1]):
+        weights = np.cos(np.arange(terms.shape[axis]) * np.arccos(places[:, axis, None]))
+        values = np.einsum("mk,mk...->m...", weights, values)
+    return values
+
+
+class _Materials:
+    """Balls at parameters; asperity laws are kept, there are few."""
+
+    def __init__(self, surface: Surface) -> None:
+        self.surface = surface
+        self._known: dict[tuple[float, float], Material] = {}
+
+    def ball(self, log_parameters: FloatArray) -> Ball:
+        key = (round(float(log_parameters[0] - log_parameters[1]), 9), round(float(log_parameters[5]), 9))
+        if key not in self._known:
+            self._known[key] = self.surface.material(log_parameters)
+        return ball_at(self.surface, self._known[key], log_parameters)
+
+
+class _Counter:
+    """Passes results on and says how many there were."""
+
+    def __init__(self, total: int, progress: Progress | None) -> None:
+        self.done, self.total, self.progress = 0, total, progress
+
+    def __call__(self, found: Any) -> Any:
+        self.done += 1
+        if self.progress is not None:
+            self.progress(self.done, self.total)
+        return found
+
+
+class _solver:
+    """Apply a function to many arguments, here or in other processes, in order."""
+
+    def __init__(self, processes: int) -> None:
+        self.pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn")) if processes > 1 else None
+
+    def __enter__(self) -> Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]:
+        return map if self.pool is None else partial(self.pool.map, chunksize=4)
+
+    def __exit__(self, *what: object) -> None:
+        if self.pool is not None:
+            self.pool.shutdown(cancel_futures=True)
+
+
+def _outputs(task: tuple[Ball, FloatArray], nodes: int) -> FloatArray:
+    ball, log_number = task
+    return ball.outputs(log_number, nodes)
+
+
+def _check(
+    table: FilmTable,
+    materials: _Materials,
+    count: int,
+    say: _Counter,
+    solve: Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]],
+) -> FloatArray:
+    """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
+    rng = np.random.default_rng(20130)
+    axes = table.axes
+    points: list[FloatArray] = []
+    while len(points) < count:
+        drawn = rng.uniform(axes.low, axes.high)
+        strain = film_scales(list(drawn), table.poisson_ratio_bulk).strain
+        if strain <= np.log(LARGEST_STRAIN) and axes.contains(list(drawn)):
+            points.append(drawn)
+    drawn = np.array(points)
+    scales = film_scales(list(drawn.T), table.poisson_ratio_bulk)
+    thickest = np.log(THICKEST_FILM) - 2 * scales.strain
+    films = contract(table, list(drawn.T[:, :, None]), 1)
+    slowest = np.minimum((films.anchor + films.unit * (SLOWEST - 0.2))[:, 0], thickest)
+    number = rng.uniform(slowest, thickest)
+    balls = [materials.ball(point) for point in drawn]
+    balls = [materials.ball(point) for point in drawn]
+    # σ_f for which μ of small contacts is about 1 at rest
+    shear_stress = np.array(
+        [np.sqrt(np.pi * materials.surface.area_correction * ball.variance) / 2 for ball in balls]
+    )
+    found = solve(partial(_outputs, nodes=_CHECK_NODES), zip(balls, number[:, None], strict=True))
+    outputs = np.array([say(output)[:, 0] for output in found])
+    slope = np.exp(scales.strain)
+    direct = (
+        shear_stress * np.exp(outputs[:, 1]) / [ball.stiffness for ball in balls]
+        + np.exp(number + outputs[:, 2]) / (3 * np.pi) * slope
+        + np.exp(outputs[:, 3]) / np.pi * slope
+    )
+    parameters = dict(zip(FILM_PARAMETERS, np.exp(drawn.T), strict=True))
+    products = np.exp(number - scales.number_per_product)
+    tabulated = tabulated_friction(table, products, parameters, shear_stress).friction_coefficient
+    errors = np.abs(tabulated / direct - 1)
+    return np.array([np.quantile(errors, 0.5), np.quantile(errors, 0.99), errors.max()])
