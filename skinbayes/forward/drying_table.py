@@ -10,7 +10,6 @@ from typing import cast
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import mean_separation
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Progress, Ranges, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS
 from skinbayes.forward.contact_inputs import (
@@ -65,10 +64,9 @@ def table_over(
         return None
     height = np.broadcast_to(rms_height(spectrum), load.shape)
     groups = skin_groups(load, pull, height, spectrum, skin, inputs["area_correction"])
-    flooded = mean_separation(load[:, None], spectrum, skin, inputs["area_correction"])
-    thinnest = min(0.45, 0.95 * known["film_floor"][0] / float(np.max(flooded)))
+    depth = float(np.max(height * np.exp(groups["load"]))) / known["film_floor"][0]
     low, high = ({name: float(end(x)) for name, x in groups.items()} for end in (np.min, np.max))
-    return bridge_table(low, high, thinnest, tables.spectrum, progress=progress)
+    return bridge_table(low, high, depth, tables.spectrum, progress=progress)
 
 
 def prepared_drying(
@@ -82,5 +80,5 @@ def prepared_drying(
         model,
         evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),
         prepare=None,
-        accuracy=f"pressure of bridged skin interpolated to {table.error:.0e} (99 % of the skins tried)",
+        accuracy=f"pressure of bridged skin interpolated to {table.error:.0e} (root mean square)",
     )

@@ -22,9 +22,9 @@ TERMS = {"gaussian": 32, "delta": 96}  # Kelvin lengths of a curve; sharp gaps m
 _BLOCK = 8192  # of a block that is solved at a time
 _REACH, _MARGIN = 0.75, 0.97
 REFERENCE = 3.0  # d0 in units of the mean separation at p0
-_MODERATE = 3  # longest of the spans below for curves that all end at the same z
-_SPANS = ((0.55, 9), (0.8, 11), (1.4, 17), (2.2, 25), (4.0, 41), (8.0, 81))
-"""Span of ln p and how many pressures interpolate it to 1e-5 or better."""
+_MODERATE = 4  # longest of the spans below for curves whose ends are given
+_SPANS = ((0.55, 7), (0.8, 8), (1.4, 12), (2.2, 20), (4.0, 35), (8.0, 75))
+"""Span of ln p and how many pressures interpolate it to 1e-4 or better."""
 
 
 class Curve(NamedTuple):
@@ -91,12 +91,12 @@ def solve_curve(
     pull: FloatArray,
     separation: FloatArray,
     thinnest: FloatArray,
-    last: float | None = None,
+    last: FloatArray | None = None,
 ) -> Curve:
     """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m.
 
-    Where the pull grows so fast that there is no such film, the curve ends at a thicker one. If ``last`` is given all curves end
-    at that z instead, and are nan where the pull is many times the load.
+    Where the pull grows so fast that there is no such film, the curve ends at a thicker one. If ``last`` is given curves end
+    at these z instead, and are nan where the pull is many times the load.
     """
     thinnest = thinnest.copy()
     count, gaps = pressure.size, TERMS[source.closure]
@@ -129,7 +129,7 @@ def solve_curve(
             if last is None:
                 end = np.log1p(curve.reference[rows] / (margin[rows] * family.gap_of_film(thinnest[rows])))
             else:
-                end = np.full(rows.size, last)
+                end = last[rows]
             short = _solve_rows(curve, family, rows, pressure, pull, end)
             thick = ~short & (curve.nodes[rows, -1] > np.log(thinnest[rows])) & (last is None)
             reach[rows[short]] *= 2.5

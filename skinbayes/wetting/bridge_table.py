@@ -30,8 +30,10 @@ SURFACE_GROUPS = ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wav
 _TERMS = TERMS["gaussian"]
 _COUNTS = (2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 16, 20)
 _PLACES, _TRIALS = 9, 48
-_AIM, _WORST = 5e-4, 1e-3  # error of p along one axis, and in the whole box
-_QUANTILE = 0.99  # of these errors: the solutions themselves are rough to 1e-3 in places
+_AIM, _WORST = (
+    2e-4,
+    4e-4,
+)  # error of p along one axis, and in the whole box; single solutions are rough to 1e-3
 _CUT, _CUTS = 0.1, 12  # by which a box is cut whose corners have no solution
 _WIDEN = 1e-9
 _BLOCK = 64  # skins solved at a time
@@ -49,10 +51,10 @@ class BridgeTable:
     ----------
     low, high : of each group of `skin_groups`, dimensionless or ln of SI values
     counts : nodes of each group that varies, dimensionless
-    end : largest z = ln(1 + d0/d_K) of the curves, dimensionless, d0 three times the flooded film
+    depth : how far the curves go, dimensionless: to ``d_K = 0.9 ū [depth ū/h_rms exp(−load)]^(−½)``
     parts : Chebyshev coefficients along z of the logarithms of the film over the flooded one and of p/p0, and ln(ū/h_rms),
         each expanded in the groups, dimensionless, shape ``(nodes, 2 terms + 1)``
-    error : of p at a given film, relative, 99 % quantile over random places of the box; nan if not measured,
+    error : root mean square of the relative error of p at given films, at random places of the box; nan if not measured,
         dimensionless
 
     References
@@ -63,7 +65,7 @@ class BridgeTable:
     low: Mapping[str, float]
     high: Mapping[str, float]
     counts: Mapping[str, int]
-    end: float
+    depth: float
     parts: FloatArray
     error: float
 
@@ -83,7 +85,8 @@ class BridgeTable:
             basis = polynomials(t, count)[0]
             weight = (weight[:, :, None] * basis[:, None, :]).reshape(pressure.size, -1)
         # one product for each member: a product of all rows at once may round differently
-        return _curve_of((weight[:, None, :] @ self.parts)[:, 0, :], self.end, pressure, height)
+        found = (weight[:, None, :] @ self.parts)[:, 0, :]
+        return _curve_of(found, _end(self.depth, found[:, -1], groups["load"]), pressure, height)
 
 
 def skin_groups(
@@ -145,7 +148,7 @@ def skin_groups(
 def bridge_table(
     low: Mapping[str, float],
     high: Mapping[str, float],
-    thinnest: float,
+    depth: float,
     spectrum: PowerSpectrum | None = None,
     most: int = 4000,
     progress: Callable[[int, int], None] | None = None,
@@ -156,7 +159,7 @@ def bridge_table(
     ----------
     low : lower end of each group of `skin_groups`, dimensionless or ln of SI values
     high : upper end of each group; equal to the lower one where it does not vary, dimensionless or ln of SI values
-    thinnest : smallest film over the flooded one that will be asked for, dimensionless
+    depth : h_rms exp(load) over the thinnest film that will be asked for, dimensionless
     spectrum : tabulated spectrum, C in m^4, if the surface is one; None is a self-affine one
     most : skins to solve at most, dimensionless
     progress : called with the number of skins solved and their total, dimensionless
@@ -164,13 +167,13 @@ def bridge_table(
     Returns
     -------
     table : `BridgeTable`; without the softest and smoothest skins of the box if the pull runs away there; None if it needs more
-        skins than ``most`` or does not come to 1e-3 of the pressure
+        skins than ``most`` or does not come to 4e-4 of the pressure
 
     Notes
     -----
-    Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.error`` (99 % of random skins and films;
-    worst towards the flooded film, where friction rises steeply). The solutions themselves are rough at the level of a few 1e-4,
-    which is why more nodes do not help beyond that. Three groups take 100 to 300 skins.
+    Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.error``; 99 % of them are within five times
+    that, the worst towards the flooded film, where the pull sets in. The solutions themselves are rough at the level of a few
+    1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 400 skins.
 
     References
     ----------
@@ -178,27 +181,25 @@ def bridge_table(
 
     Examples
     --------
-    Layers from 6 to 8 MPa, down to a film of 1 % of the flooded one:
+    Layers from 6 to 8 MPa, down to a film of about 0.1 µm:
 
     >>> from skinbayes.roughness import named_surface
     >>> skins = LayeredSkin(np.array([6e6, 8e6]), 20e3, 0.5, 0.5, 20e-6)
     >>> same = (np.full(2, x) for x in (6830.0, 0.0845, 22.4e-6))
     >>> groups = skin_groups(*same, named_surface("paper_reference"), skins, np.array(0.42))
     >>> low, high = ({name: end(x) for name, x in groups.items()} for end in (np.min, np.max))
-    >>> table = bridge_table(low, high, 0.01)
+    >>> table = bridge_table(low, high, 22.4e-6 * np.exp(low["load"]) / 1e-7)
     >>> print(dict(table.counts), table.error < 1e-3)
     {'stiffness': 3} True
     """
     low, high = dict(low), dict(high)
-    end = _reach(low, high, thinnest, spectrum)
     for _ in range(_CUTS):
-        if end is not None:
+        if _solvable(low, high, depth, spectrum):
             break
         # soft and smooth skin is where the pull runs away
         low["stiffness"] += _CUT * (high["stiffness"] - low["stiffness"])
         high["load"] -= _CUT * (high["load"] - low["load"])
-        end = _reach(low, high, thinnest, spectrum)
-    if end is None:
+    else:
         return None
     axes = [name for name in low if high[name] > low[name]]
     middle = {name: (low[name] + high[name]) / 2 for name in low}
@@ -206,9 +207,9 @@ def bridge_table(
     for name in axes:
         first, last = ({**middle, name: ends[name]} for ends in (low, high))
         places = {name: np.linspace(low[name], high[name], _PLACES + 2)[1:-1]}
-        sound = _solve({**_fields(middle), **places}, end, spectrum)
+        sound = _solve({**_fields(middle), **places}, depth, spectrum)
         for count in _COUNTS:
-            table = _build(first, last, {name: count}, end, spectrum)
+            table = _build(first, last, {name: count}, depth, spectrum)
             if table is not None and _error(table, places, sound) < _AIM:
                 break
         else:
@@ -216,9 +217,9 @@ def bridge_table(
         counts[name] = count
     rng = np.random.default_rng(0)
     trial = {name: rng.uniform(low[name], high[name], _TRIALS) for name in axes}
-    sound = _solve({**_fields(middle), **trial}, end, spectrum)
+    sound = _solve({**_fields(middle), **trial}, depth, spectrum)
     while prod(counts.values()) <= most:
-        whole = _build(low, high, counts, end, spectrum, progress)
+        whole = _build(low, high, counts, depth, spectrum, progress)
         if whole is None:
             return None
         error = _error(whole, trial, sound)
@@ -236,7 +237,7 @@ def _build(
     low: Mapping[str, float],
     high: Mapping[str, float],
     counts: Mapping[str, int],
-    end: float,
+    depth: float,
     spectrum: PowerSpectrum | None,
     progress: Callable[[int, int], None] | None = None,
 ) -> BridgeTable | None:
@@ -247,7 +248,7 @@ def _build(
     values = np.empty((total, 2 * _TERMS + 1))
     for first in range(0, total, _BLOCK):
         block = slice(first, first + _BLOCK)
-        values[block] = _solve({**_fields(low), **{n: x[block] for n, x in grid.items()}}, end, spectrum)
+        values[block] = _solve({**_fields(low), **{n: x[block] for n, x in grid.items()}}, depth, spectrum)
         if progress is not None:
             progress(min(first + _BLOCK, total), total)
     if not np.isfinite(values).all():
@@ -257,20 +258,21 @@ def _build(
         moved = np.moveaxis(parts, i, 0)
         parts = np.moveaxis(coefficients(moved.reshape(1, count, -1)).reshape(moved.shape), 0, i)
     parts = np.ascontiguousarray(parts.reshape(total, -1))
-    return BridgeTable(dict(low), dict(high), dict(counts), end, parts, np.nan)
+    return BridgeTable(dict(low), dict(high), dict(counts), depth, parts, np.nan)
 
 
-def _reach(
-    low: Mapping[str, float], high: Mapping[str, float], thinnest: float, spectrum: PowerSpectrum | None
-) -> float | None:
-    """z at which the curves of all corners of the box have come to the film ``thinnest``; None if some have no such curve."""
+def _solvable(
+    low: Mapping[str, float], high: Mapping[str, float], depth: float, spectrum: PowerSpectrum | None
+) -> bool:
+    """Tell whether all corners of the box have curves."""
     ends = [sorted({low[name], high[name]}) for name in low]
     corners = dict(zip(low, np.array(list(product(*ends))).T, strict=True))
-    curve, _, flooded = _curves(corners, thinnest, None, spectrum)
-    end = float(curve.end.max())
-    far = curve.nodes[:, -1] > np.log(thinnest * flooded)
-    sound = not far.any() and np.isfinite(_solve(corners, end, spectrum)).all()
-    return end if sound else None
+    return bool(np.isfinite(_solve(corners, depth, spectrum)).all())
+
+
+def _end(depth: float, log_separation: FloatArray, load: FloatArray) -> FloatArray:
+    """Largest z = ln(1 + d0/d_K) of the curves: films thin as the square of d_K/ū, so that it follows the root of ū."""
+    return np.asarray(np.log1p(REFERENCE / 0.9 * np.exp((np.log(depth) + log_separation - load) / 2)))
 
 
 def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
@@ -279,34 +281,34 @@ def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
     groups = {n: np.broadcast_to(x, (count,)) for n, x in {**_fields(table.low), **places}.items()}
     one = np.ones(count)
     curve = table.curve(groups, one, one)
-    sound = _curve_of(exact, table.end, one, one)
+    sound = _curve_of(exact, curve.end, one, one)
     # all films but the last of them, which one of the two may not reach, and the vertical rise where the gap is flooded
-    z = np.broadcast_to(table.end * np.linspace(0.2, 0.98, 48), (count, 48))
+    z = curve.end[:, None] * np.linspace(0.2, 0.98, 48)
     film = np.exp(sound.along(z)[0])
     # a curve that is nan is as wrong as can be
     errors = np.nan_to_num(np.abs(curve.at(film)[1][0] - sound.at(film)[1][0]), nan=np.inf)
-    return float(np.sort(errors, axis=None)[int(_QUANTILE * errors.size)])
+    return float(np.sqrt(np.mean(np.square(errors))))
 
 
-def _curve_of(found: FloatArray, end: float, pressure: FloatArray, height: FloatArray) -> Curve:
+def _curve_of(found: FloatArray, end: FloatArray, pressure: FloatArray, height: FloatArray) -> Curve:
     """Curves from coefficients as in `BridgeTable`, shape ``(B, 2 terms + 1)``."""
     separation = height * np.exp(found[:, -1])
     parts = np.stack([found[:, :_TERMS], found[:, _TERMS:-1]], axis=-1)
     parts[:, 0] += np.log(np.stack([separation, pressure], axis=-1))
     nodes = values_at_nodes(np.ascontiguousarray(parts[..., 0]))
-    return Curve(REFERENCE * separation, np.full(pressure.size, end), nodes, parts)
+    return Curve(REFERENCE * separation, end, nodes, parts)
 
 
-def _solve(places: Groups, end: float, spectrum: PowerSpectrum | None) -> FloatArray:
+def _solve(places: Groups, depth: float, spectrum: PowerSpectrum | None) -> FloatArray:
     """Chebyshev coefficients along z, and ln(ū/h_rms), as in `BridgeTable`, of skins with the groups ``places``."""
-    curve, load, flooded = _curves(places, 0.1, end, spectrum)
+    curve, load, flooded = _curves(places, depth, spectrum)
     parts = curve.parts[..., :2].copy()
     parts[:, 0] -= np.log(np.stack([flooded, load], axis=-1))
     return np.concatenate([parts[..., 0], parts[..., 1], np.log(flooded / _HEIGHT)[:, None]], axis=1)
 
 
 def _curves(
-    places: Groups, thinnest: float, end: float | None, spectrum: PowerSpectrum | None
+    places: Groups, depth: float, spectrum: PowerSpectrum | None
 ) -> tuple[Curve, FloatArray, FloatArray]:
     """Curves of skins of some height and modulus with the groups ``places``, their loads, Pa, and flooded films, m."""
     count = max(len(x) for x in places.values())
@@ -332,4 +334,5 @@ def _curves(
     with np.errstate(all="ignore"):
         flooded = np.asarray(mean_separation(load[:, None], surface, skin, gamma))[:, 0]
         source = GapSource(surface, skin, gamma, "gaussian")
-        return solve_curve(source, load, pull, flooded, thinnest * flooded, end), load, flooded
+        end = _end(depth, np.log(flooded / _HEIGHT), given["load"])
+        return solve_curve(source, load, pull, flooded, flooded / 10, end), load, flooded
