@@ -19,7 +19,7 @@ from skinbayes.lubrication.film import NODES, lubricated_films
 from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.rheology import FlowCurve
-from skinbayes.lubrication.stribeck import StribeckCurve, stribeck_curve
+from skinbayes.lubrication.stribeck import THICKEST_FILM, StribeckCurve, stribeck_curve
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _ROUNDS, _CLOSE = 60, 1e-7  # of the iteration for ln η
@@ -52,6 +52,7 @@ def stribeck_curve_of_liquid(
     velocity_shift_factor: float = 1.0,
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
+    thickest_film: float = THICKEST_FILM,
 ) -> tuple[StribeckCurve, EffectiveViscosity]:
     """Stribeck curve of a liquid of measured flow curve, with one viscosity for the whole film (Appendix C of the paper).
 
@@ -71,6 +72,7 @@ def stribeck_curve_of_liquid(
     velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
     flow_factors : of the flow between rough surfaces; None for trivial ones
     nodes : number of places across the contact, dimensionless
+    thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
@@ -84,13 +86,21 @@ def stribeck_curve_of_liquid(
 
     Notes
     -----
-    See `tabulated_friction_of_liquids` for when the solution is the only one. How far one viscosity is from the local one
-    at every place of the film (``rheology`` of `stribeck_curve`), for the liquids of Fehlberg et al. (2025) between 1 mm/s
-    and 1 m/s, is stated there.
+    See `tabulated_friction_of_liquids` for when there is only one solution, and for how far one viscosity is from the local
+    one at every place of the film. Where several agree with their films, one of them is given.
 
     References
     ----------
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6, Appendix C).
+
+    Examples
+    --------
+    >>> from skinbayes.roughness import named_surface
+    >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    >>> honey = FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])
+    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, 8e-3, 0.2, wet, surface, 15e6)
+    >>> print(curve.friction_coefficient.round(3), viscosity.viscosity.round(1))
+    [0.108 0.325] [25.  24.6]
     """
     speed = np.atleast_1d(np.asarray(sliding_speed, dtype=np.float64))
     wrong = np.flatnonzero(~(np.isfinite(speed) & (speed > 0)))
@@ -115,7 +125,7 @@ def stribeck_curve_of_liquid(
     rate = np.exp(shear_rate(log_viscosity))
     curve = stribeck_curve(
         np.exp(log_viscosity) * speed, sphere_radius, normal_force, skin, spectrum, frictional_shear_stress, area_correction,
-        velocity_shift_factor, flow_factors, nodes=nodes,
+        velocity_shift_factor, flow_factors, nodes=nodes, thickest_film=thickest_film,
     )  # fmt: skip
     good = np.isfinite(curve.friction_coefficient)
     unmeasured = good & ~liquids.measured(rate)

@@ -115,9 +115,10 @@ class FilmAxes:
     offset : dimensionless, shape ``(A,)``
     excluded : combinations of ln p that the table cannot vary, dimensionless, shape ``(R, 6)``
     excluded_at : their values, dimensionless, shape ``(R,)``
-    reference : ln of the parameters in the middle of their ranges, SI, shape ``(6,)``
-    low, high : ln of the ends of the ranges, SI, shape ``(6,)`` each
-    ended : the axis that ends where contact is fullest, the force or the roughness; -1 if all ranges end before
+    reference : ln of the parameters (Pa, m, N) in the middle of their ranges, shape ``(6,)``
+    low, high : ln of the ends of the ranges (Pa, m, N), shape ``(6,)`` each
+    ended : the axis that ends where contact is fullest, the force or the roughness; -1 if all ranges end before,
+        dimensionless
     side : 1.0 if it is the upper end of that axis, -1.0 if the lower one, dimensionless
     end : the coordinate of that end is ``end @ ln p − end_offset``, dimensionless, shape ``(6,)``
     end_offset : dimensionless
@@ -232,7 +233,7 @@ def film_axes(
     >>> film_axes({**ranges, "young_modulus_layer": (1e6, 1e7), "normal_force": (0.2, 0.5)}).names[2]
     'normal_force × sphere_radius / young_modulus_bulk'
     """
-    low, high = _logarithms(ranges)
+    low, high = range_logarithms(ranges)
     reference = (low + high) / 2
     varying = np.flatnonzero(high > low)
     influence = _INVARIANTS[:, varying]
@@ -311,7 +312,8 @@ def _with_end(axes: FilmAxes, poisson_ratio_bulk: float, stress_scale: float) ->
     return replace(axes, ended=place, side=side, end=end, end_offset=offset)
 
 
-def _logarithms(ranges: Mapping[str, tuple[float, float]]) -> tuple[FloatArray, FloatArray]:
+def range_logarithms(ranges: Mapping[str, tuple[float, float]]) -> tuple[FloatArray, FloatArray]:
+    """ln of the ends of the ranges, SI, shape ``(6,)`` each; `InputError` if a range is missing or wrong."""
     unknown = sorted(set(ranges) ^ set(FILM_PARAMETERS))
     if unknown:
         raise InputError(

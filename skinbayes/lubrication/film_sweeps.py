@@ -16,6 +16,7 @@ from skinbayes.contact.variance import stress_variance
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw, asperity_table, law_of_table
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
+from skinbayes.lubrication.film_axes import range_logarithms
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE = range(6)
@@ -57,6 +58,7 @@ class Surface:
 
     def stress_scale(self, ranges: Mapping[str, tuple[float, float]]) -> float:
         """√V/(E0 h_rms), 1/m, for the softest layer on the stiffest tissue of some ranges of the parameters, SI."""
+        range_logarithms(ranges)
         layer, bulk, thickness = (
             max(ranges["young_modulus_layer"][0], ranges["young_modulus_bulk"][1]),
             ranges["young_modulus_bulk"][1],

@@ -76,9 +76,28 @@ def build_film_table(
     InputError
         if a range is wrong, or if no film is found at a node
 
+    Notes
+    -----
+    The table ends where b/Rc is `LARGEST_STRAIN` for the largest ball and where p_H/√V is 0.3: the closer to complete contact,
+    the stiffer the dependence on everything. In both moduli over two decades, roughness from 2 to 60 µm, radius from 5 to 15 mm
+    and force from 0.1 to 5 N, all varying, friction is within 0.3 % (99 of 100 random places) and 0.4 % (the worst of 300) of
+    direct solutions; narrower ranges do better with fewer nodes.
+
     References
     ----------
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6).
+
+    Examples
+    --------
+    A table for one ball only has no axes; it holds the balls that are similar, too.
+
+    >>> from skinbayes.roughness import named_surface
+    >>> ball = {"young_modulus_layer": 7e6, "young_modulus_bulk": 20e3, "rms_height": 22.4e-6, "sphere_radius": 8e-3,
+    ...         "normal_force": 0.2, "layer_thickness": 20e-6}
+    >>> ranges = {name: (value, value) for name, value in ball.items()}
+    >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
+    >>> print(table.axes.names, table.contains(**ball), table.contains(**{**ball, "rms_height": 1e-5}))
+    () True False
     """
     surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
     axes = film_axes(ranges, poisson_ratio_bulk, LARGEST_STRAIN, counts, surface.stress_scale(ranges))
@@ -137,9 +156,8 @@ def chebyshev_nodes(count: int) -> FloatArray:
 
 def _nodes_of(counts: tuple[int, ...]) -> FloatArray:
     """All combinations of the nodes, shape ``(M, A)``."""
-    return np.array(list(product(*(chebyshev_nodes(count).tolist() for count in counts)))).reshape(
-        -1, len(counts)
-    )
+    nodes = list(product(*(chebyshev_nodes(count).tolist() for count in counts)))
+    return np.array(nodes).reshape(len(nodes), len(counts))
 
 
 def _pad(terms: FloatArray, counts: tuple[int, ...]) -> FloatArray:

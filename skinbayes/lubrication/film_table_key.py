@@ -48,7 +48,7 @@ def film_table_key(
 
     Returns
     -------
-    key : numbers and texts that JSON can hold; equal for equal tables
+    key : numbers (SI: Pa, m, N, or dimensionless) and texts that JSON can hold; equal for equal tables
 
     Raises
     ------

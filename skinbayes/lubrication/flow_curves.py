@@ -69,7 +69,7 @@ class LiquidRows:
 
 
 def liquid_rows(flow_curves: Sequence[FlowCurve]) -> LiquidRows:
-    """Tabulate the flow curves of rows, each curve once (cubics on 512 cells of ln shear rate).
+    """Tabulate the flow curves of rows, each curve once: cubics on 512 cells of ln shear rate (as Fig. 21 of the paper).
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def liquid_rows(flow_curves: Sequence[FlowCurve]) -> LiquidRows:
 
     References
     ----------
-    Fritsch & Carlson, SIAM J. Numer. Anal. 17 (1980) 238, doi 10.1137/0717021 (interpolation of the measured points).
+    Fritsch & Carlson, SIAM J. Numer. Anal. 17 (1980) 238, doi 10.1137/0717021 (monotone interpolation).
 
     Examples
     --------

@@ -55,7 +55,7 @@ class StribeckCurve:
     strained : b/Rc is above `NOTABLE_STRAIN`: Hertz's theory is stretched
     largely_strained : b/Rc is above `LARGE_STRAIN`
     too_strained : b/Rc is above `LARGEST_STRAIN`
-    film_beyond_ball : 3π ηv/f_N is above `THICKEST_FILM`: the film is thicker than the inlet that the ball offers
+    film_beyond_ball : 3π ηv/f_N is above the thickest film: it is thicker than the inlet that the ball offers
     impossible : an input is not a number or not physical, such as a force or speed below 0
     not_converged : no film was found
     shear_rate_unmeasured : v/u of the film lies outside the shear rates for which the viscosity is known
@@ -88,8 +88,7 @@ class StribeckCurve:
         said = {
             "impossible": "an input is not physical",
             "too_strained": f"the contact is wider than {LARGEST_STRAIN:g} of the cylinder's radius (b/Rc)",
-            "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N above "
-            f"{THICKEST_FILM:g})",
+            "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
             "not_converged": "no film was found",
             "strained": f"b/Rc is above {NOTABLE_STRAIN:g}, where Hertz's theory is stretched",
             "largely_strained": f"b/Rc is above {LARGE_STRAIN:g}: the contact is nearly half as wide as the ball, or wider",
@@ -112,6 +111,7 @@ def stribeck_curve(
     flow_factors: FlowFactors | None = None,
     rheology: Rheology | None = None,
     nodes: int = NODES,
+    thickest_film: float = THICKEST_FILM,
 ) -> StribeckCurve:
     """Friction coefficient of a ball on lubricated rough skin (Sect. 6 of the paper, Fig. 13).
 
@@ -132,6 +132,7 @@ def stribeck_curve(
     flow_factors : of the flow between rough surfaces; None for trivial ones, which the paper finds sufficient
     rheology : viscosity against shear rate v/u; None for a Newtonian liquid
     nodes : number of places across the contact, dimensionless
+    thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
@@ -155,7 +156,7 @@ def stribeck_curve(
     >>> print(curve.friction_coefficient.round(3))
     [1.423 0.915 0.109   nan]
     >>> print(*curve.reasons(), sep="\\n")
-    1 of 4 points: the film is thicker than the inlet of the ball (3π ηv/f_N above 0.5).
+    1 of 4 points: the film is thicker than the inlet of the ball (3π ηv/f_N too large).
     3 of 4 points: b/Rc is above 0.3, where Hertz's theory is stretched.
     """
     given = np.asarray(speed_viscosity_product, dtype=np.float64)
@@ -177,7 +178,9 @@ def stribeck_curve(
     points = (np.broadcast_to(part, (*batch, part.shape[-1])) for part in table)
     knots, levels = (part.reshape(-1, part.shape[-1]) for part in points)
     rows = [
-        _one_curve(products, _Case(*case), AsperityTable(*points), flow_factors, rheology, nodes)
+        _one_curve(
+            products, _Case(*case), AsperityTable(*points), flow_factors, rheology, nodes, thickest_film
+        )
         for case, *points in zip(cases.tolist(), knots, levels, strict=True)
     ]
 
@@ -209,6 +212,7 @@ def _one_curve(
     flow_factors: FlowFactors | None,
     rheology: Rheology | None,
     nodes: int,
+    thickest_film: float,
 ) -> dict[str, Any]:
     """The fields of a `StribeckCurve` for one set of parameters."""
     cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, case.modulus)
@@ -219,7 +223,7 @@ def _one_curve(
         physical = np.isfinite(strain) & (load > 0) & (case.shear_stress >= 0)
         physical = physical & np.isfinite(table.log_pressure).all() & (np.diff(table.separation) > 0).all()
         possible = (shifted > 0) & (shifted < np.inf) & physical
-        beyond = possible & (3 * np.pi * shifted > THICKEST_FILM * load)
+        beyond = possible & (3 * np.pi * shifted > thickest_film * load)
     wide = np.full(products.shape, bool(strain > LARGEST_STRAIN))
     solved = possible & ~beyond & ~wide
     result: dict[str, Any] = {

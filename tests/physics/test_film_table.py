@@ -1,0 +1,232 @@
+"""Tables of films against the direct solver, and what a table must not do."""
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+from small_film_tables import RANGES, draw, skin_of, small_table, spectrum_of
+
+from skinbayes.errors import InputError
+from skinbayes.lubrication import (
+    FilmTable,
+    build_film_table,
+    film_table_key,
+    stribeck_curve,
+    tabulated_friction,
+)
+from skinbayes.roughness import named_surface
+
+SHEAR_STRESS = 15e6
+PRODUCTS = np.geomspace(1e-6, 0.3, 30)
+FIELDS = (
+    "friction_coefficient", "boundary", "couette", "pressure_flow", "central_film", "minimum_film", "asperity_load_share",
+)  # fmt: skip
+
+
+def direct(parameters, products, nodes=160, **options):
+    one = {name: float(value) for name, value in parameters.items()}
+    return stribeck_curve(
+        products, one["sphere_radius"], one["normal_force"], skin_of(one), spectrum_of(one), SHEAR_STRESS, nodes=nodes, **options
+    )  # fmt: skip
+
+
+def vector(parameters, place):
+    return {name: value[place].item() for name, value in parameters.items()}
+
+
+def test_table_against_direct_solutions():
+    parameters = draw(np.random.default_rng(1), 4)
+    found = tabulated_friction(small_table(), PRODUCTS, parameters, SHEAR_STRESS, everything=True)
+    for place in range(4):
+        wanted = direct(vector(parameters, place), PRODUCTS)
+        valid = wanted.valid
+        assert valid.sum() > 20
+        assert np.array_equal(np.isfinite(found.friction_coefficient[place]), valid)
+        for name in FIELDS:
+            tabulated, solved = getattr(found, name)[place][valid], getattr(wanted, name)[valid]
+            # boundary and load share fall by many decades; elsewhere films move by more than friction does
+            level = 1e-3 if name in ("boundary", "asperity_load_share") else 0.0
+            tolerance = {"friction_coefficient": 5e-3, "minimum_film": 2e-2}.get(name, 1e-2)
+            assert np.all(np.abs(tabulated - solved) <= tolerance * (solved + level)), name
+
+
+def test_beyond_both_ends_of_the_speeds_against_direct_solutions():
+    parameters = vector(draw(np.random.default_rng(2), 1), 0)
+    products = np.array([1e-9, 1e-8, 1e-7, 0.1, 0.5])
+    found = tabulated_friction(small_table(), products, parameters, SHEAR_STRESS, everything=True)
+    wanted = direct(parameters, products, nodes=300)
+    for name in ("couette", "pressure_flow", "central_film"):
+        keep = wanted.valid
+        assert np.abs(getattr(found, name) / getattr(wanted, name) - 1)[keep].max() < 0.01, name
+    assert np.abs(found.boundary / wanted.boundary - 1)[:3].max() < 2e-3
+    # fluid friction in proportion to the speed
+    assert found.couette[1] / found.couette[0] == pytest.approx(10, rel=1e-4)
+    assert found.pressure_flow[1] / found.pressure_flow[0] == pytest.approx(10, rel=1e-4)
+
+
+def test_similar_balls_are_the_same_entry_and_the_same_curve():
+    """(h, F, R) and (h R/R0, F R/R0, R0) differ by a factor in speed only; b/Rc, and so friction, goes as 1/R."""
+    parameters = vector(draw(np.random.default_rng(3), 1), 0)
+    ratio = 1.6
+    similar = {
+        **parameters,
+        "sphere_radius": parameters["sphere_radius"] * ratio,
+        "rms_height": parameters["rms_height"] / ratio,
+        "normal_force": parameters["normal_force"] / ratio,
+    }
+    table = small_table()
+    assert table.contains(**similar)
+    products = np.geomspace(1e-6, 0.05, 12)
+    # λ = 12 ηv Rc³/(E* b⁴) at equal b
+    of_similar = products / ratio**3
+    wanted = direct(parameters, products)
+    solved = direct(similar, of_similar)
+    tabulated = tabulated_friction(table, of_similar, similar, SHEAR_STRESS)
+    for curve, tolerance in ((solved, 1e-5), (tabulated, 6e-3)):
+        # E0 h is smaller by the ratio and so are V^(1/2) and p_H
+        assert np.all(np.abs(curve.boundary - ratio * wanted.boundary) < tolerance * (wanted.boundary + 1e-2))
+        fluid, wanted_fluid = curve.couette + curve.pressure_flow, wanted.couette + wanted.pressure_flow
+        assert np.abs(fluid * ratio / wanted_fluid - 1).max() < tolerance
+
+
+def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
+    rng = np.random.default_rng(4)
+    for rows in (0, 30):
+        parameters = draw(rng, 700, rows)
+        stress, shift = rng.uniform(1e6, 2e7, (700, 1)), rng.uniform(0.5, 20.0, (700, 1))
+        batch = tabulated_friction(small_table(), PRODUCTS, parameters, stress, shift, everything=True)
+        for place in (0, 1, 272, 273, 699):
+            one = {name: value[place : place + 1] for name, value in parameters.items()}
+            single = tabulated_friction(
+                small_table(), PRODUCTS, one, stress[place], shift[place], everything=True
+            )
+            for whole, part in zip(batch, single, strict=True):
+                assert np.array_equal(whole[place], part[0], equal_nan=True)
+
+
+def test_curve_and_its_slope_are_continuous():
+    """Second differences stay small everywhere: over cells, and over both ends of the tabulated speeds."""
+    parameters = vector(draw(np.random.default_rng(5), 1), 0)
+    log_product = np.linspace(np.log(1e-8), np.log(0.2), 20001)
+    found = tabulated_friction(small_table(), np.exp(log_product), parameters, SHEAR_STRESS, everything=True)
+    step = log_product[1] - log_product[0]
+    for name in ("friction_coefficient", "couette", "pressure_flow", "central_film"):
+        curve = np.log(getattr(found, name))
+        slope = np.diff(curve) / step
+        assert (
+            np.abs(np.diff(slope)).max() < 4 * step
+        )  # a kink would leave a jump of the slope that does not shrink
+        assert np.abs(slope).max() < 2.0
+    assert np.all(np.diff(found.boundary) <= 1e-12)
+    assert np.all(np.diff(found.central_film) >= 0)
+    # and along the axes
+    moduli = np.exp(np.linspace(*np.log(RANGES["young_modulus_bulk"]), 2001))[1:-1]
+    along = tabulated_friction(
+        small_table(), 3e-3, {**parameters, "young_modulus_bulk": moduli[:, None]}, 1e7
+    )
+    slope = np.diff(np.log(along.friction_coefficient[:, 0]))
+    assert np.abs(np.diff(slope)).max() < 1e-4
+
+
+def test_outside_is_refused_not_extrapolated():
+    table = small_table()
+    inside = vector(draw(np.random.default_rng(6), 1), 0)
+    assert not tabulated_friction(table, 1e-3, inside, SHEAR_STRESS).outside_table
+    for name, value in (
+        ("young_modulus_bulk", 6.1e4),
+        ("rms_height", 14.9e-6),
+        ("normal_force", 0.61),
+        ("normal_force", np.nan),
+        ("normal_force", -0.3),
+        ("sphere_radius", 8.1e-3),  # not similar to any ball inside: at the edge, or of another b
+        ("layer_thickness", 21e-6),
+        ("young_modulus_layer", 6.9e6),
+    ):
+        changed = {**inside, name: value}
+        if name in ("sphere_radius", "young_modulus_layer"):
+            changed |= {"rms_height": 24.9e-6, "young_modulus_bulk": 5.99e4, "normal_force": 0.599}
+        found = tabulated_friction(table, 1e-3, changed, SHEAR_STRESS)
+        assert found.outside_table, name
+        assert np.isnan(found.friction_coefficient)
+        assert not table.contains(**changed)
+    beyond = tabulated_friction(table, 10.0, inside, SHEAR_STRESS)
+    assert beyond.film_beyond_ball
+    assert np.isnan(beyond.friction_coefficient)
+    assert np.isnan(tabulated_friction(table, -1.0, inside, SHEAR_STRESS).friction_coefficient)
+
+
+def test_held_out_errors_are_kept_with_the_table():
+    held_out = small_table().held_out
+    assert small_table().held_out_count == 20
+    assert 0 < held_out[0] < held_out[1] <= held_out[2] < 5e-3
+
+
+def test_tables_travel():
+    table = small_table()
+    arrays, metadata = table.to_arrays()
+    again = FilmTable.from_arrays(arrays, json.loads(json.dumps(metadata)))
+    parameters = draw(np.random.default_rng(7), 3)
+    wanted = tabulated_friction(table, PRODUCTS, parameters, SHEAR_STRESS)
+    for other in (again, pickle.loads(pickle.dumps(table))):
+        found = tabulated_friction(other, PRODUCTS, parameters, SHEAR_STRESS)
+        assert np.array_equal(found.friction_coefficient, wanted.friction_coefficient, equal_nan=True)
+    with pytest.raises(InputError, match="version 0"):
+        FilmTable.from_arrays(arrays, {**metadata, "version": 0})
+    with pytest.raises(InputError, match="lacks held_out"):
+        FilmTable.from_arrays({k: v for k, v in arrays.items() if k != "held_out"}, metadata)
+
+
+def test_progress_and_processes():
+    ranges = {**RANGES, "young_modulus_bulk": (4e4, 4e4), "rms_height": (20e-6, 20e-6)}
+    said = []
+    surface = named_surface("paper_reference")
+    options = {"counts": {"normal_force": 3}, "speeds": 9, "nodes": 40, "checked": 2}
+    one = build_film_table(
+        ranges, surface, **options, progress=lambda done, total: said.append((done, total))
+    )
+    assert said == [(done, 8) for done in range(1, 9)]  # three anchors, three nodes, two checks
+    two = build_film_table(ranges, surface, **options, processes=2)
+    assert np.array_equal(one.coefficients, two.coefficients)
+
+
+def test_wrong_inputs_are_named():
+    with pytest.raises(InputError, match="need exactly young_modulus_layer"):
+        build_film_table({"rms_height": (1e-6, 2e-6)}, named_surface("paper_reference"))
+    with pytest.raises(InputError, match=r"rms_height ranges from 2e-05 to 1e-05 m"):
+        build_film_table({**RANGES, "rms_height": (2e-5, 1e-5)}, named_surface("paper_reference"))
+    with pytest.raises(InputError, match="missing or unknown: layer_thickness"):
+        tabulated_friction(
+            small_table(), 1e-3, {n: v[0] for n, v in RANGES.items() if n != "layer_thickness"}, 1e6
+        )
+
+
+def test_the_key_tells_tables_apart():
+    surface = named_surface("paper_reference")
+    key = film_table_key(RANGES, surface)
+    assert json.loads(json.dumps(key)) == key
+    assert film_table_key(dict(reversed(RANGES.items())), named_surface("paper_reference")) == key
+    others = [
+        film_table_key({**RANGES, "normal_force": (0.2, 0.7)}, surface),
+        film_table_key(RANGES, named_surface("paper_reference_sharp")),
+        film_table_key(RANGES, surface, poisson_ratio_layer=0.4),
+        film_table_key(RANGES, surface, poisson_ratio_bulk=0.4),
+        film_table_key(RANGES, surface, area_correction=1.0),
+        film_table_key(RANGES, surface, counts={"rms_height": 9}),
+        film_table_key(RANGES, surface, speeds=32),
+        film_table_key(RANGES, surface, nodes=96),
+        film_table_key(RANGES, surface, checked=0),
+    ]
+    texts = {json.dumps(other, sort_keys=True) for other in (key, *others)}
+    assert len(texts) == 10
+
+
+def test_numbers_of_the_direct_solver_belong_to_the_version_of_tables():
+    """Whoever changes these numbers raises VERSION in film_table.py, so that stored tables are built anew."""
+    one = {name: float(np.sqrt(low * high)) for name, (low, high) in RANGES.items()}
+    curve = direct(one, [1e-5, 1e-3, 1e-2, 0.1], nodes=80)
+    version_1 = VERSION_1_FRICTION
+    assert curve.friction_coefficient == pytest.approx(version_1, rel=2e-6)
+
+
+VERSION_1_FRICTION = [1.640783676, 0.965422395, 0.175572675, 0.148386114]
