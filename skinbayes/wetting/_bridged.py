@@ -76,7 +76,7 @@ class Bridged(NamedTuple):
         rows = np.flatnonzero(solvable & ~known)
         if rows.size:
             load, pull, film = self.load[rows], self.pull[rows], thinnest[rows]
-            yield rows, solve_curve(self.source.select(rows), load, pull, separation[rows], film)
+            yield rows, solve_curve(self.source.select(rows), load, pull, separation[rows], film, whole=True)
 
     def log_pressure(self, films: FloatArray) -> FloatArray:
         """ln p, p in Pa, at films, m, of shape ``(B, F)``; nan where a parameter is impossible."""

@@ -92,11 +92,13 @@ def solve_curve(
     separation: FloatArray,
     thinnest: FloatArray,
     last: FloatArray | None = None,
+    whole: bool = False,
 ) -> Curve:
     """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m.
 
     Where the pull grows so fast that there is no such film, the curve ends at a thicker one. If ``last`` is given curves end
-    at these z instead, and are nan where the pull is many times the load.
+    at these z instead, and are nan where the pull is many times the load. Of ``whole`` curves
+    those are nan that do not come to the thinnest film.
     """
     thinnest = thinnest.copy()
     count, gaps = pressure.size, TERMS[source.closure]
@@ -119,6 +121,8 @@ def solve_curve(
         for group in np.unique(need):
             if group == len(_SPANS):  # pressures out of reach: do with a curve that ends earlier
                 rows = todo[need == group]
+                if whole:
+                    continue
                 thinnest[rows] *= 4
                 reach[rows], margin[rows] = _REACH, _MARGIN
                 again.append(rows[thinnest[rows] < separation[rows]])

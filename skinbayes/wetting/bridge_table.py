@@ -171,7 +171,7 @@ def bridge_table(
 
     Notes
     -----
-    Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.error``; 99 % of them are within five times
+    Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.error``; 99 % of them within five times
     that, the worst towards the flooded film, where the pull sets in. The solutions themselves are rough at the level of a few
     1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 400 skins.
 

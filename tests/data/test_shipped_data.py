@@ -17,6 +17,7 @@ MEASUREMENTS = {
     "adams2007-forearm-glass": 2,
     "fehlberg2025-finger-stribeck": 165,
     "fehlberg2025-rheology": 306,
+    "persson2013-drying-summary": 1,
 }
 REFERENCE = {
     "buchholz1988-palmar-friction": 10,

@@ -1,0 +1,101 @@
+"""Forward model ``drying-features``: time, height and width of the friction peak of drying skin (Sect. 5, Fig. 7)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.forward.alike_rows import once_for_alike
+from skinbayes.forward.base import ForwardModel, Inputs, Tables
+from skinbayes.forward.capillary_film import Closure
+from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
+from skinbayes.forward.drying_inputs import (
+    DRYING_ACCEPTED,
+    DRYING_DEFAULTS,
+    DRYING_INPUTS,
+    evaporation_rate_of,
+    film_contact_of,
+    initial_film_of,
+)
+from skinbayes.forward.drying_table import prepared_drying
+from skinbayes.wetting import BridgeTable, DryingFeatures, drying_features
+
+OBSERVABLES = DryingFeatures._fields
+
+
+def _features(
+    inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None
+) -> dict[str, FloatArray]:
+    features = drying_features(
+        inputs["wetting_time"],
+        initial_film_of(inputs),
+        evaporation_rate_of(inputs),
+        film_contact_of(inputs, tables, closure, table),
+        inputs["frictional_shear_stress"],
+        nominal_pressure_of(inputs),
+        inputs["film_spread"],
+    )
+    return {name: np.asarray(getattr(features, name)) for name in OBSERVABLES}
+
+
+def _evaluate(
+    inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None = None
+) -> dict[str, FloatArray]:
+    # noise that differs by row must not part rows that share a curve
+    known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
+    return once_for_alike(known, partial(_features, tables=tables, closure=closure, table=table))
+
+
+def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
+    """Why there is no peak, or none after wetting."""
+    found = _evaluate(inputs, tables, closure)
+    missing = np.isnan(found["peak_time"]) & np.isfinite(found["dry_time"])
+    said = []
+    wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
+    pull = inputs["surface_tension"] * np.maximum(wetting, 0.0)
+    if (missing & (pull == 0.0)).any():
+        said.append(
+            "no friction peak: without surface tension, or where the cosines of the two contact angles do not sum to more than "
+            "0, there are no capillary bridges to raise friction above the wet plateau; peak_time, peak_friction and peak_width "
+            "are missing"
+        )
+    if (missing & (pull > 0.0)).any():
+        said.append(
+            "no friction peak: capillary bridges do not outweigh the hardening of the drying layer, so that friction never rises "
+            "above the wet plateau; peak_time, peak_friction and peak_width are missing"
+        )
+    if (found["peak_time"] < inputs["wetting_time"]).any():
+        said.append(
+            "the film after wetting is thinner than that of the peak: friction falls from the start, and peak_time, before "
+            "wetting, says when it would have peaked"
+        )
+    return said
+
+
+def features_model(name: str, summary: str, closure: Closure) -> ForwardModel:
+    """Return the forward model with one of the closures of the gap distribution."""
+    model = ForwardModel(
+        name=name,
+        summary=summary,
+        observables=OBSERVABLES,
+        required=DRYING_INPUTS,
+        optional=DRYING_DEFAULTS,
+        accepted=DRYING_ACCEPTED,
+        evaluate=partial(_evaluate, closure=closure),
+        validate=validate_contact,
+        explain=partial(_explain, closure=closure),
+        derived=pressure_and_slope,
+        derived_names=("nominal_pressure", "rms_slope"),
+        blocks=("rms_slope",),
+    )
+    return replace(model, prepare=partial(prepared_drying, model=model)) if closure == "gaussian" else model
+
+
+MODEL = features_model(
+    "drying-features",
+    "time, height and width of the friction peak of drying skin, its wet plateau, dry friction and the time it is dry",
+    "gaussian",
+)
