@@ -125,6 +125,19 @@ _ALL = (
     _closed("asperity_load_share", "φ_a", "1", "share of the load that asperities carry", 1.0),
     _closed("minimum_film_thickness", "u_min", "m", "smallest mean separation of lubricated surfaces"),
     _closed("central_film_thickness", "u_c", "m", "mean separation under the middle of the ball"),
+    # descriptions of friction without a theory
+    Quantity("typical_friction_coefficient", "μ_typ", "1", "friction coefficient that depends on nothing"),
+    Quantity("plateau_friction_coefficient", "μ_0", "1", "friction coefficient at small speed times viscosity"),
+    Quantity(
+        "transition_speed_viscosity_product",
+        "S_t",
+        "N/m",
+        "speed times viscosity at which friction leaves its plateau, at a load of 1 N",
+    ),
+    Quantity("transition_exponent", "a_t", "1", "how abruptly friction leaves its plateau"),
+    Quantity("transition_load_exponent", "m_t", "1", "power of the load with which the transition moves", -inf),
+    Quantity("rising_friction_coefficient", "μ_r", "1", "friction of the rising branch at the transition"),
+    Quantity("rising_exponent", "b_r", "1", "power of speed times viscosity with which friction rises"),
     # water
     Quantity("surface_tension", "γ_w", "N/m", "surface tension of the liquid"),
     _closed("contact_angle_skin", "θ1", "rad", "contact angle of the liquid on skin", pi),

@@ -146,6 +146,7 @@ class ModelBlock(_Strict):
     rheology: RheologyBlock | None = None
     derived: dict[str, DerivedBlock] = Field(default_factory=dict)
     conditions: dict[str, GridBlock] = Field(default_factory=dict)
+    yardsticks: list[str] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _data_need_noise(self) -> ModelBlock:

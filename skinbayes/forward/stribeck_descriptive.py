@@ -1,0 +1,94 @@
+"""Forward model ``stribeck-descriptive``: the shape of a Stribeck curve without a theory behind it.
+
+With x = ηv / (S_t (F_N / 1 N)^m), speed times viscosity over that of the transition,
+
+    μ = (μ_0 + μ_r x^b x^a) / (1 + x^a)
+
+a mean of the plateau μ_0 of boundary friction, x ≪ 1, and of the rising branch μ_r x^b of full films, x ≫ 1, with weights
+1 and x^a. It is smooth and positive, and lies between the two. Such an interpolation describes measured curves of soft
+contacts: Bongaerts, Fourtouni & Stokes, Tribology International 40 (2007) 1531, doi 10.1016/j.triboint.2007.01.007, there
+without the load. It says nothing on skin; it is what a theory of as many parameters has to beat.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
+
+REFERENCE_LOAD = 1.0
+"""Load at which the transition is at ``transition_speed_viscosity_product``, N."""
+
+LAW = (
+    "plateau_friction_coefficient",
+    "transition_speed_viscosity_product",
+    "transition_exponent",
+    "rising_friction_coefficient",
+    "rising_exponent",
+)
+
+
+def _abscissa(inputs: Inputs) -> FloatArray:
+    """Return ηv [N/m]: as given, or viscosity times sliding speed."""
+    if "speed_viscosity_product" in inputs:
+        return np.asarray(inputs["speed_viscosity_product"], dtype=float)
+    return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
+
+
+def _friction(inputs: Inputs, product: FloatArray) -> FloatArray:
+    """Friction coefficient at ηv [N/m]; all broadcast."""
+    plateau, transition, sharpness, rising, slope = (inputs[name] for name in LAW)
+    load = inputs["normal_force"] / REFERENCE_LOAD
+    place = product / (transition * load ** inputs["transition_load_exponent"])
+    # 1/(1 + x^a) and x^a/(1 + x^a), neither of which overflows
+    with np.errstate(over="ignore", divide="ignore"):
+        boundary = 1.0 / (1.0 + place**sharpness)
+        film = 1.0 / (1.0 + place**-sharpness)
+    return np.asarray(plateau * boundary + rising * place**slope * film)
+
+
+def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    return {"friction_coefficient": _friction(inputs, _abscissa(inputs))}
+
+
+def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    return {}
+
+
+def _validate(inputs: Inputs, tables: Tables) -> None:
+    if not (_abscissa(inputs) >= 0).all():
+        raise InputError("speed times viscosity is negative somewhere; expected values >= 0 N/m")
+
+
+def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
+    return np.geomspace(1e-6, 1e1, 71)
+
+
+def _profile(inputs: Inputs, tables: Tables, products: FloatArray) -> FloatArray:
+    columns = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
+    return _friction(columns, products)
+
+
+MODEL = ForwardModel(
+    name="stribeck-descriptive",
+    summary="a Stribeck curve that only describes: plateau, transition, rising branch; the yardstick of theories",
+    observables=("friction_coefficient",),
+    required=(*LAW, "normal_force", (("speed_viscosity_product",), ("viscosity", "sliding_speed"))),
+    optional={"transition_load_exponent": 0.0},
+    evaluate=_evaluate,
+    derived=_derived,
+    validate=_validate,
+    uses_surface=False,
+    profiles=(
+        Profile(
+            name="stribeck",
+            title="Descriptive Stribeck curve",
+            abscissa="speed_viscosity_product",
+            ordinate="friction_coefficient",
+            grid=_grid,
+            evaluate=_profile,
+        ),
+    ),
+)
