@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
 
+if TYPE_CHECKING:
+    from skinbayes.comparison import Comparison
+
 
 @click.command()
 @click.argument("runs", nargs=-1, required=True, metavar="RUN RUN ...")
+@click.option(
+    "--refit",
+    is_flag=True,
+    help="Sample anew without a person, a liquid, … where importance sampling cannot leave it out.",
+)
 @json_option
-def compare(runs: tuple[str, ...], as_json: bool) -> None:
-    """Compare models by leave-one-out cross-validation (PSIS-LOO); runs on different data are refused."""
+def compare(runs: tuple[str, ...], refit: bool, as_json: bool) -> None:
+    """Compare models by what they predict for data left out; runs on different data are refused.
+
+    Single data are left out one at a time (PSIS-LOO), and where the data have grouping columns all data of one person, or one
+    liquid.
+    """
+    from skinbayes.cli.progress import counted_progress
     from skinbayes.comparison import compare as compare_fits
     from skinbayes.fit import load_fit
 
-    result = compare_fits([load_fit(run) for run in runs])
+    fits = [load_fit(run) for run in runs]
+    with counted_progress("refits") as progress:
+        result = compare_fits(fits, refit=refit, progress=progress)
     if as_json:
         print_json(result.to_dict())
         return
@@ -26,4 +43,16 @@ def compare(runs: tuple[str, ...], as_json: bool) -> None:
     ]  # fmt: skip
     headers = ("model", "elpd", "se", "difference", "se", "p_loo", "weight", "unreliable rows")
     print_table(headers, rows, right=range(1, 8))
+    for column in result.columns:
+        _print_levels(result, column)
     print_sentences(result.sentences())
+
+
+def _print_levels(result: Comparison, column: str) -> None:
+    rows = []
+    for model in sorted(result.models, key=lambda model: -model.left_out[column].elpd):
+        entry = model.left_out[column]
+        numbers = (entry.elpd, entry.elpd_se, entry.difference, entry.difference_se)
+        rows.append((model.name, *(f"{number:.2f}" for number in numbers), str(len(entry.unreliable))))
+    headers = ("model", "elpd", "se", "difference", "se", "unreliable")
+    print_table(headers, rows, title=f"one {column} left out at a time", right=range(1, 6))

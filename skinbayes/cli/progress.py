@@ -50,6 +50,29 @@ def sampling_progress(ess: float) -> Iterator[Callable[[Progress], None]]:
         yield update
 
 
+@contextmanager
+def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
+    """Yield what to call with the number done and their total; nothing is shown before the first call."""
+    terminal = console(stderr=True)
+    if not terminal.is_terminal:
+        yield lambda done, total: click.echo(f"{what}: {done} of {total}", err=True)
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    bar = Bar(
+        TextColumn(what),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=terminal,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task(what, total=None, visible=False)
+        yield lambda done, total: bar.update(task, completed=done, total=total, visible=True)
+
+
 def _lines(ess: float) -> Callable[[Progress], None]:
     last = time.monotonic()
 

@@ -39,7 +39,7 @@ def standard_error(pointwise: FloatArray) -> float:
 
 
 def loo(groups: Mapping[str, xarray.Dataset]) -> dict[str, Any]:
-    """Pareto-smoothed importance-sampling leave-one-out cross-validation.
+    """Pareto-smoothed importance-sampling leave-one-out cross-validation, over the data of all observables.
 
     Vehtari, Gelman and Gabry 2017, doi 10.1007/s11222-016-9696-4.
 
@@ -49,10 +49,38 @@ def loo(groups: Mapping[str, xarray.Dataset]) -> dict[str, Any]:
         ``elpd`` (expected log predictive density), ``se``, ``p`` (effective number of parameters), ``pointwise`` ``(N,)``,
         ``pareto_k`` ``(N,)``, and ``good_k``: above it an estimate is not reliable.
     """
+    densities = [variable.values for variable in groups["log_likelihood"].data_vars.values()]
+    joined = np.concatenate([values.reshape(*values.shape[:2], -1) for values in densities], axis=-1)
+    return _left_out(groups["posterior"], joined)
+
+
+def leave_level_out(groups: Mapping[str, xarray.Dataset], column: str) -> dict[str, Any]:
+    """The same for all data of one level of a grouping column at a time, from ``log_likelihood_left_out``.
+
+    With the density of the data of a level given all others and the parameters, the importance of a draw for the posterior
+    without that level is one over it, as it is for a single datum.
+
+    Returns
+    -------
+    dict
+        As :func:`loo`, one entry for each level, and ``levels``
+    """
+    variable = groups["log_likelihood_left_out"][column]
+    found = _left_out(groups["posterior"], variable.values)
+    return found | {"levels": tuple(str(level) for level in variable[f"{column}_level"].values)}
+
+
+def _left_out(posterior: xarray.Dataset, log_density: FloatArray) -> dict[str, Any]:
+    """Leave-one-out of whatever the densities ``(chain, draw, N)`` are of."""
+    import xarray
+
     az = arviz()
-    needed = {name: groups[name] for name in ("posterior", "log_likelihood", "observed_data")}
+    needed = {
+        "posterior": posterior,
+        "log_likelihood": xarray.Dataset({"left_out": (("chain", "draw", "part"), log_density)}),
+    }
     with warnings.catch_warnings():
-        # bad Pareto k are reported in words, row by row
+        # bad Pareto k are reported in words, part by part
         warnings.simplefilter("ignore")
         result = az.loo(to_arviz(needed), pointwise=True)
     elpd = result.elpd_loo if hasattr(result, "elpd_loo") else result.elpd

@@ -13,6 +13,7 @@ from skinbayes.errors import FingerprintMismatch, InputError
 from skinbayes.fit.result import Fit
 
 if TYPE_CHECKING:
+    from skinbayes.files.dataset import Dataset
     from skinbayes.problem import Problem
 
 RESULT = "result.nc"
@@ -20,6 +21,9 @@ SUMMARY = "summary.csv"
 RUN = "run.json"
 STEPS = "steps"
 """Folder of the sampler's step store inside a run directory."""
+
+YARDSTICK_MODELS = "yardstick-models"
+"""Folder of the user's own yardsticks inside a run directory."""
 
 
 def save_fit(fit: Fit, path: Path) -> Path:
@@ -102,6 +106,11 @@ def claim_run(directory: Path, problem: Problem, resume: bool) -> None:
                 f"{directory}: holds a run of '{stored.get('model')}' with another model, data, prior or version than "
                 f"'{problem.name}' here; give another folder"
             )
+        for path in _own_yardsticks(problem):
+            if not path.is_file():
+                raise InputError(
+                    f"{problem.spec.path}: yardsticks: no file {path}; expected a model file to compare with"
+                )
         if stored is None or not resume:
             directory.mkdir(parents=True, exist_ok=True)
             _write_inputs(directory, problem)
@@ -112,6 +121,11 @@ def claim_run(directory: Path, problem: Problem, resume: bool) -> None:
         raise InputError(
             f"{directory}: cannot be used for a run ({reason}); expected a folder that can be written"
         ) from None
+
+
+def _own_yardsticks(problem: Problem) -> list[Path]:
+    """Yardsticks that are no shipped models."""
+    return [Path(name) for name in problem.spec.yardsticks if Path(name).suffix == ".toml"]
 
 
 def _read_note(directory: Path) -> dict[str, Any] | None:
@@ -142,6 +156,7 @@ def _write_inputs(directory: Path, problem: Problem) -> None:
         folder = directory / "data"
         folder.mkdir(exist_ok=True)
         _copy(source, folder / source.name)
+        note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
         provenance = source.with_name("provenance.toml")
         if source.name == "data.csv" and provenance.exists():
             _copy(provenance, folder / provenance.name)
@@ -154,6 +169,9 @@ def _write_inputs(directory: Path, problem: Problem) -> None:
     if problem.surface_file is not None:
         _copy(problem.surface_file, directory / "spectrum.csv")
         note["surface"] = "spectrum.csv"
+    for path in _own_yardsticks(problem):
+        (directory / YARDSTICK_MODELS).mkdir(exist_ok=True)
+        _copy(path, directory / YARDSTICK_MODELS / path.name)
     # last, so that a directory with this file is complete
     (directory / RUN).write_text(json.dumps(note, indent=1) + "\n", encoding="utf-8")
 
@@ -166,6 +184,7 @@ def _copy(source: Path, copy: Path) -> None:
 
 def _rebuild(path: Path, provenance: Mapping[str, Any]) -> Problem | None:
     """The problem of a stored run, from the copies beside it or, for a bare file, from the shipped models."""
+    from skinbayes.files.dataset import load_dataset
     from skinbayes.problem import load_problem
 
     try:
@@ -175,7 +194,16 @@ def _rebuild(path: Path, provenance: Mapping[str, Any]) -> Problem | None:
             if note["surface"]:
                 settings["surface"] = str(path / note["surface"])
             rheology = path / note["rheology"] if note.get("rheology") else None
-            problem = load_problem(path / "model.toml", path / note["data"], settings, rheology=rheology)
+            data: Path | Dataset = path / note["data"]
+            if "rows" in note:  # which need not be those that the model file selects
+                dataset = load_dataset(path / note["data"])
+                data = dataset.select(note["rows"]) if note["rows"] else dataset
+            problem = load_problem(path / "model.toml", data, settings, rheology=rheology)
+            copies = [
+                str(path / YARDSTICK_MODELS / Path(name).name) if Path(name).suffix == ".toml" else name
+                for name in problem.spec.yardsticks
+            ]
+            problem = replace(problem, spec=replace(problem.spec, yardsticks=tuple(copies)))
         else:
             problem = load_problem(str(provenance["model_path"]))
     except (InputError, OSError, ValueError, KeyError):

@@ -28,7 +28,7 @@ from skinbayes.vocabulary import QUANTITIES
 
 def load_problem(
     name: str | Path,
-    data: str | Path | None = None,
+    data: str | Path | Dataset | None = None,
     settings: Mapping[str, str] | None = None,
     conditions: str | Path | None = None,
     rheology: str | Path | None = None,
@@ -38,7 +38,8 @@ def load_problem(
     Parameters
     ----------
     name : shipped model or path of a model file
-    data : a CSV of the user's own (or a data set) to use instead of the one named in the model file
+    data : a CSV of the user's own (or a data set) to use instead of the one named in the model file; of a
+        :class:`Dataset` all rows are used, whichever the model file selects
     settings : values to fix, as text with unit: ``{"yield_stress": "40 MPa", "surface": "paper_printed"}``;
         ``name[level]`` fixes one level of a parameter that differs by group
     conditions : a CSV of rows to predict instead of the data's; such a problem has no likelihood
@@ -181,7 +182,9 @@ def _surface(
     return None, None, entries
 
 
-def _dataset(spec: ModelSpec, data: str | Path | None) -> Dataset:
+def _dataset(spec: ModelSpec, data: str | Path | Dataset | None) -> Dataset:
+    if isinstance(data, Dataset):
+        return data
     if data is None:
         try:
             find_dataset(str(spec.dataset))

@@ -33,7 +33,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "forward": {*WORDS, *PHYSICS},
     "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "skinbayes"},
     "fit": {*WORDS, "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
-    "comparison": {*WORDS, "units", "statistics", "fit"},
+    "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
     "report": {*WORDS, "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",

@@ -1,0 +1,230 @@
+"""Comparing models on the same data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from skinbayes.comparison.scores import FEW_ROWS, LeftOut, Progress, Scores, difference, score
+from skinbayes.comparison.weights import stacking_weights
+from skinbayes.comparison.words import (
+    few_levels,
+    level_question,
+    pointwise_question,
+    sign_of,
+    unreliable_levels,
+)
+from skinbayes.errors import InputError
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+
+
+@dataclass(frozen=True)
+class ComparedModel:
+    """One model of a comparison.
+
+    Attributes
+    ----------
+    name : the model
+    log_evidence, log_evidence_se : not computed in this version, None
+    elpd_loo, elpd_loo_se : expected log predictive density of left-out data and its standard error
+    p_loo : effective number of parameters
+    elpd_difference, elpd_difference_se : difference to the best model and its standard error
+    weight : stacking weight
+    unreliable_rows : data whose Pareto k says that leaving them out cannot be estimated from these draws
+    converged : whether the fit met its stopping rule
+    left_out : the same for all data of one level of a grouping column at a time, by column
+    """
+
+    name: str
+    log_evidence: float | None
+    log_evidence_se: float | None
+    elpd_loo: float
+    elpd_loo_se: float
+    p_loo: float
+    elpd_difference: float
+    elpd_difference_se: float
+    weight: float
+    unreliable_rows: int
+    converged: bool
+    left_out: Mapping[str, LeftOut] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain types."""
+        levels = {column: entry.to_dict() for column, entry in self.left_out.items()}
+        return asdict(replace(self, left_out={})) | {"left_out": levels}
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Models ordered from best to worst by their predictive density of single data.
+
+    Attributes
+    ----------
+    models : best first
+    rows : number of data
+    grouped_by : grouping columns that have effects in one of the models
+    """
+
+    models: tuple[ComparedModel, ...]
+    rows: int
+    grouped_by: tuple[str, ...] = ()
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Grouping columns whose levels were left out."""
+        return tuple(self.models[0].left_out)
+
+    def sentences(self) -> list[str]:
+        """What the comparison says, in words."""
+        best, said = self.models[0], []
+        for other in self.models[1:]:
+            gap, error = -other.elpd_difference, other.elpd_difference_se
+            if not sign_of(gap, error):
+                said.append(
+                    f"These data do not tell '{best.name}' and '{other.name}' apart: their predictive densities differ by "
+                    f"{gap:.2f} ± {error:.2f}."
+                )
+            else:
+                said.append(
+                    f"'{best.name}' predicts left-out data better than '{other.name}', by {gap:.1f} ± {error:.1f}."
+                )
+        if self.grouped_by:
+            said.append(pointwise_question(self.grouped_by))
+        if self.rows < FEW_ROWS:
+            said.append(
+                f"With {self.rows} data leave-one-out can hardly decide anything; standard errors are not to be trusted."
+            )
+        for column in self.columns:
+            said += self._on_levels(column)
+        for model in self.models:
+            if model.unreliable_rows:
+                said.append(
+                    f"'{model.name}': {model.unreliable_rows} of {self.rows} data influence the posterior so strongly that "
+                    "leaving them out cannot be estimated by importance sampling (Pareto k above the limit)."
+                )
+            for left_out in model.left_out.values():
+                said += unreliable_levels(model.name, left_out)
+            if not model.converged:
+                said.append(f"'{model.name}' has NOT CONVERGED; its numbers are provisional.")
+        return said
+
+    def _on_levels(self, column: str) -> list[str]:
+        said = [level_question(column, self.grouped_by)]
+        ordered = sorted(self.models, key=lambda model: -model.left_out[column].elpd)
+        best = ordered[0]
+        for other in ordered[1:]:
+            gap, error = -other.left_out[column].difference, other.left_out[column].difference_se
+            if sign_of(gap, error):
+                said.append(f"'{best.name}' does so better than '{other.name}', by {gap:.1f} ± {error:.1f}.")
+            else:
+                said.append(
+                    f"In that '{best.name}' and '{other.name}' are not told apart: they differ by {gap:.2f} ± {error:.2f}."
+                )
+        return said + few_levels(best.left_out[column])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain types."""
+        return {
+            "models": [model.to_dict() for model in self.models],
+            "rows": self.rows,
+            "sentences": self.sentences(),
+        }
+
+
+def compare(fits: Sequence[Fit], refit: bool = False, progress: Progress | None = None) -> Comparison:
+    """Compare fits by what they predict for data left out.
+
+    Single data by Pareto-smoothed importance-sampling leave-one-out cross-validation, Vehtari, Gelman & Gabry 2017,
+    doi 10.1007/s11222-016-9696-4; weights by stacking, Yao et al. 2018, doi 10.1214/17-BA1091. And, where the data have grouping
+    columns, all data of one person, or one liquid, in the same way: Merkle, Furr & Rabe-Hesketh 2019,
+    doi 10.1007/s11336-019-09679-0, on why these are other questions.
+
+    Parameters
+    ----------
+    fits : two or more fits of the same data
+    refit : sample a model anew without a level of a grouping column where importance sampling cannot leave it out
+    progress : called before the first and after every refit of a model, with the number done and their total
+
+    Raises
+    ------
+    InputError
+        Fewer than two fits, fits of different data (another table, other rows or another observable), or a refit is needed
+        of a fit whose model or data are not at hand.
+    """
+    if len(fits) < 2:
+        raise InputError(f"{len(fits)} run given; a comparison needs at least two")
+    reference = fits[0]
+    for fit in fits[1:]:
+        if fit.provenance["data"]["fingerprint"] != reference.provenance["data"]["fingerprint"]:
+            raise InputError(
+                f"'{reference.name}' and '{fit.name}' were fitted to different data "
+                f"({_describe(reference)}; {_describe(fit)}); only models of the same rows can be compared"
+            )
+    return compare_scores([score(fit, refit, progress) for fit in fits], grouped_by(fits))
+
+
+def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> Comparison:
+    """Compare models of the same data by their scores.
+
+    Parameters
+    ----------
+    scores : of one or more fits
+    grouped : grouping columns that have effects in one of the models
+    """
+    pointwise = np.stack([entry.loo["pointwise"] for entry in scores])
+    weights = stacking_weights(pointwise)
+    best = int(np.argmax([entry.loo["elpd"] for entry in scores]))
+    left_out = _differences(scores)
+    models = []
+    for i, entry in enumerate(scores):
+        gap, error = difference(pointwise[i], pointwise[best])
+        models.append(
+            ComparedModel(
+                name=entry.name,
+                log_evidence=None,
+                log_evidence_se=None,
+                elpd_loo=entry.loo["elpd"],
+                elpd_loo_se=entry.loo["se"],
+                p_loo=entry.loo["p"],
+                elpd_difference=gap,
+                elpd_difference_se=error,
+                weight=float(weights[i]),
+                unreliable_rows=int((entry.loo["pareto_k"] > entry.loo["good_k"]).sum()),
+                converged=entry.converged,
+                left_out=left_out[i],
+            )
+        )
+    models.sort(key=lambda model: -model.elpd_loo)
+    return Comparison(tuple(models), pointwise.shape[1], grouped)
+
+
+def grouped_by(fits: Sequence[Fit]) -> tuple[str, ...]:
+    """Grouping columns that have effects in one of the fits."""
+    labels = [label for fit in fits for label in (*fit.names, *fit.provenance.get("fixed", {}))]
+    found = [
+        label.partition("[")[2].removesuffix("]") for label in labels if label.startswith("group_scale[")
+    ]
+    return tuple(dict.fromkeys(found))
+
+
+def _differences(scores: Sequence[Scores]) -> list[dict[str, LeftOut]]:
+    """Scores of levels with differences to the best model, for columns that all models have."""
+    columns = [c for c in scores[0].left_out if all(c in entry.left_out for entry in scores)]
+    found: list[dict[str, LeftOut]] = [{} for _ in scores]
+    for column in columns:
+        entries = [entry.left_out[column] for entry in scores]
+        best = max(entries, key=lambda entry: entry.elpd)
+        for kept, entry in zip(found, entries, strict=True):
+            gap, error = difference(entry.pointwise, best.pointwise)
+            kept[column] = replace(entry, difference=gap, difference_se=error)
+    return found
+
+
+def _describe(fit: Fit) -> str:
+    data = fit.provenance["data"]
+    return f"{data.get('rows')} rows of {data.get('key')}"

@@ -1,0 +1,99 @@
+"""A problem without some of its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+from skinbayes.problem.fingerprint import digest_data, digest_model
+from skinbayes.problem.inputs import Conditions, plan_inputs
+from skinbayes.statistics.groups import CrossedGroups
+
+if TYPE_CHECKING:
+    from skinbayes.problem.problem import Problem
+
+
+def without_level(problem: Problem, column: str, level: str) -> Problem:
+    """The problem without the data of one level of a grouping column, such as one person.
+
+    Its parameters are those of the whole problem, in the same order, so that draws of one are parameter vectors of the other. A
+    parameter of that level alone stays, with nothing but its prior to say on it.
+
+    Parameters
+    ----------
+    problem : a problem with data
+    column : grouping column
+    level : the level whose rows go
+
+    Returns
+    -------
+    Problem
+        what the forward model has prepared is shared
+
+    Raises
+    ------
+    InputError
+        No data, no such column or level, or no other level
+
+    Examples
+    --------
+    >>> from skinbayes.problem import load_problem
+    >>> without_level(load_problem("finger-water"), "person", "ID01").conditions.n_rows
+    10
+    """
+    labels = problem.conditions.labels
+    if problem.dataset is None or not problem.observations or column not in labels:
+        raise InputError(
+            f"{problem.spec.path}: '{problem.name}' has no data with a column '{column}'; "
+            f"grouping columns: {', '.join(labels) or 'none'}"
+        )
+    others = [other for other in dict.fromkeys(labels[column].tolist()) if other != level]
+    keep = labels[column] != level
+    if keep.all() or not others:
+        raise InputError(
+            f"{problem.spec.path}: {column} '{level}' cannot be left out: "
+            + ("there is no other" if not others else f"expected one of {', '.join(others)}")
+        )
+    rows = _kept_rows(problem.conditions, keep)
+    dataset = problem.dataset.select({column: others})
+    observations = tuple(
+        replace(o, values=o.values[keep], spread=o.spread[keep]) for o in problem.observations
+    )
+    curves = problem.tables.flow_curves
+    tables = problem.tables
+    if curves is not None:
+        tables = replace(tables, flow_curves=tuple(c for c, kept in zip(curves, keep, strict=True) if kept))
+    groups = problem.groups
+    if groups is not None:
+        groups = CrossedGroups.of_labels({name: rows.labels[name] for name in groups.columns})
+    data_digest = digest_data(dataset, observations)
+    reduced = replace(
+        problem,
+        conditions=rows,
+        dataset=dataset,
+        observations=observations,
+        input_spread=_kept(problem.input_spread, keep),
+        groups=groups,
+        tables=tables,
+        fingerprint=digest_model(problem.spec, problem.free, problem.fixed, tables, data_digest),
+        data_fingerprint=data_digest,
+        _plan=plan_inputs(problem.fixed, problem.free, rows),
+    )
+    # prepared for the ranges of all rows, so also for these
+    reduced.__dict__["model"] = problem.model
+    return reduced
+
+
+def _kept_rows(rows: Conditions, keep: NDArray[np.bool_]) -> Conditions:
+    labels = {name: values[keep] for name, values in rows.labels.items()}
+    return Conditions(_kept(rows.values, keep), labels, int(keep.sum()), _kept(rows.covariates, keep))
+
+
+def _kept(columns: Mapping[str, FloatArray], keep: NDArray[np.bool_]) -> dict[str, FloatArray]:
+    return {name: values[keep] for name, values in columns.items()}
