@@ -36,20 +36,30 @@ def cell_of(position: FloatArray, count: int) -> tuple[NDArray[np.intp], FloatAr
 
 def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Weights of the four coefficients from that of the cell on."""
-    rest = 1 - place
-    first = rest * rest * rest / 6
-    last = place * place * place / 6
-    # second and third by symmetry: (4 − 6u² + 3u³)/6
-    second = 2 / 3 - place * place + 3 * last
-    return first, second, 1 - first - second - last, last
+    square = place * place
+    last = square * place
+    last *= 1 / 6
+    # (1 + 3u + 3u² − 3u³)/6 and (1 − 3u + 3u² − u³)/6; all four add up to 1
+    third = place + square
+    third *= 0.5
+    third += 1 / 6
+    third -= 3 * last
+    first = square - place
+    first *= 0.5
+    first += 1 / 6
+    first -= last
+    return first, 1 - first - third - last, third, last
 
 
 def cubic_slopes(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Derivatives of the weights by the position."""
-    rest = 1 - place
-    first, last = rest * rest / -2, place * place / 2
-    second = place * (1.5 * place - 2)
-    return first, second, -first - second - last, last
+    last = place * place
+    last *= 0.5
+    third = place + 0.5
+    third -= 3 * last
+    first = place - 0.5
+    first -= last
+    return first, -(first + third + last), third, last
 
 
 def gather(

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.line_contact import line_contact
-from skinbayes.lubrication._uniform_spline import (
-    cell_of,
-    cubic_slopes,
-    cubic_weights,
-    gather,
-    gather_both,
-    spline_coefficients,
-)
+from skinbayes.lubrication._uniform_spline import cell_of, spline_coefficients
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
 
-LOWEST, HIGHEST = float(np.log(1e-6)), float(np.log(3e3))
+LOWEST, HIGHEST = float(np.log(1e-6)), float(np.log(2e4))
 """ln λ between which smooth films are solved; below, each output is a power of λ."""
 
 _STEP, _NODES, _PART = 0.4, 160, 6
@@ -52,23 +45,41 @@ class SmoothFilms:
 
         Below the range they go on as powers of λ, above it the values at its end are given.
         """
-        count = self.coefficients.shape[1] - 2
+        cells = self.coefficients.shape[1] - 3
         position = (log_number - self.lowest) / self.step
-        held = np.minimum(np.maximum(position, 0.0), count - 1.0)
-        cell, place = cell_of(held, count)
-        weights, slopes = cubic_weights(place), cubic_slopes(place) if slope else ()
-        flat = self.coefficients.reshape(-1)
+        held = np.minimum(np.maximum(position, 0.0), float(cells))
+        cell, place = cell_of(held, cells + 1)
         below = np.minimum(position, 0.0)
         found: list[FloatArray] = []
         for output in outputs:
-            row = self.coefficients[output]
-            power = (row[2] - row[0]) / 2
+            level, linear, square, cube = (part[output].take(cell) for part in self._cubics)
+            cube *= place
+            inner = square + cube
+            inner *= place
+            value = (linear + inner) * place
+            value += level
+            value += self._cubics[1, output, 0] * below
+            found.append(value)
             if slope:
-                value, rate = gather_both(flat, cell, output * (count + 2), weights, slopes)
-                found.extend([value + power * below, rate / self.step])
-            else:
-                found.append(gather(flat, cell, output * (count + 2), weights) + power * below)
+                # d/du of level + u (linear + u (square + u cube)), with inner = u square + u² cube
+                cube *= place
+                found.append((linear + 2 * inner + cube) / self.step)
         return found
+
+    @cached_property
+    def _cubics(self) -> FloatArray:
+        """Coefficients by the place in a cell, 0 … 1, lowest first, shape ``(4, 4, cells)``."""
+        first, second, third, fourth = (
+            self.coefficients[:, shift : self.coefficients.shape[1] - 3 + shift] for shift in range(4)
+        )
+        return np.array(
+            [
+                (first + 4 * second + third) / 6,
+                (third - first) / 2,
+                (first - 2 * second + third) / 2,
+                (fourth - first + 3 * (second - third)) / 6,
+            ]
+        )
 
 
 @lru_cache(maxsize=1)

@@ -48,7 +48,7 @@ class TabulatedFriction(NamedTuple):
     minimum_film : smallest mean separation, m; nan if not asked for
     asperity_load_share : share of the load that asperities carry, dimensionless; nan if not asked for
     strain : b/Rc of the Hertz contact, dimensionless
-    outside_table : the table does not hold the parameters
+    outside_table : the table does not hold the parameters, or λ is above 2e4
     too_strained : b/Rc is above `LARGEST_STRAIN`
     film_beyond_ball : 3π ηv/f_N is above the thickest film
     """
@@ -138,7 +138,7 @@ def tabulated_friction_of_liquids(
     The viscosity is that at the shear rate v/u of the film which it makes: ``u = u(a η(v/u) v)`` with the mean separation u
     under the middle of the ball. As ``d ln u/d ln λ ≤ 1``, there is one solution where the shear stress η γ̇ of the liquid
     rises with the shear rate. Where it was measured to fall there may be several: the thickest film is taken, the one that
-    a rising speed meets first, unless two lie closer than a twelfth of the range of ln η.
+    a rising speed meets first, unless two lie closer than an eighth of the range of ln η.
 
     Parameters
     ----------
@@ -262,7 +262,8 @@ def _friction(
     log_number = log_product + scales.number_per_product
     strained = scales.strain > np.log(LARGEST_STRAIN)
     beyond = log_number + 2 * scales.strain > np.log(thickest_film)
-    good = films.inside & ~strained & ~beyond & np.isfinite(log_number) & (shear_stress >= 0)
+    held = films.inside & (log_number <= films.smooth.highest)
+    good = held & ~strained & ~beyond & np.isfinite(log_number) & (shear_stress >= 0)
     log_number = np.where(good, log_number, films.anchor)
     wanted = _EVERYTHING if everything else _FRICTION
     logs = dict(zip(wanted, films.log_outputs(log_number, wanted), strict=True))
@@ -280,7 +281,7 @@ def _friction(
         np.exp(logs[MINIMUM] + scales.height) + missing if everything else nothing,
         np.exp(logs[SHARE]) + missing if everything else nothing,
         np.broadcast_to(np.exp(scales.strain), good.shape),
-        np.broadcast_to(~films.inside, good.shape),
+        ~held & ~np.isnan(log_number),
         np.broadcast_to(strained, good.shape),
         beyond,
     )

@@ -8,7 +8,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.lubrication.film_contraction import ContractedFilms
 from skinbayes.lubrication.flow_curves import LiquidRows
 
-_SCANNED = 12  # parts of the range of ln η searched for the thickest of several films
+_SCANNED = 8  # parts of the range of ln η searched for the thickest of several films
 _ROUNDS, _CLOSE = 60, 1e-9  # of the iteration for ln η
 
 
@@ -62,7 +62,7 @@ def viscosity_of_films(
         low, high = np.where(miss > 0, x, low), np.where(miss < 0, x, high)
         step = x + miss / (1 + slope * film_slope)
         x = np.where((step >= low) & (step <= high), step, (low + high) / 2)
-        if count >= 2 and 2 * near.size >= moving.size:
+        if count and 4 * near.size >= moving.size:
             left = np.flatnonzero(far)
             moving = moving.take(left)
             x, low, high, offset, shear = (array.take(left) for array in (x, low, high, offset, shear))
