@@ -156,8 +156,8 @@ class Ball:
                 return np.log(found)
         raise InputError(
             f"No film was found for a cylinder of radius {self.cylinder_radius:.3g} m under {self.load_per_length:.3g} N/m "
-            f"on tissue of E* = {self.reduced_modulus:.3g} Pa with rms roughness {self.surface.rms_height:.3g} m scaled to "
-            f"E0 h = {self.stiffness:.3g} Pa m; the ranges of the table of films must end before."
+            f"on tissue of E* = {self.reduced_modulus:.3g} Pa with E0 h_rms = {self.stiffness:.3g} Pa m, which the table "
+            "of films needs; narrower ranges may do without."
         )
 
     def anchors(self) -> tuple[float, float]:

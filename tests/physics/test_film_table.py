@@ -7,14 +7,19 @@ import numpy as np
 import pytest
 from small_film_tables import RANGES, draw, skin_of, small_table, spectrum_of
 
+from skinbayes.contact.line_contact import line_contact
 from skinbayes.errors import InputError
 from skinbayes.lubrication import (
     FilmTable,
     build_film_table,
+    film_sweeps,
     film_table_key,
+    lubricated_films,
     stribeck_curve,
     tabulated_friction,
 )
+from skinbayes.lubrication.film import lubrication_number_per_product
+from skinbayes.lubrication.film_reference import smooth_films
 from skinbayes.roughness import named_surface
 
 SHEAR_STRESS = 15e6
@@ -190,6 +195,47 @@ def test_progress_and_processes():
     assert np.array_equal(one.coefficients, two.coefficients)
 
 
+def test_films_that_are_not_found_end_the_build(monkeypatch):
+    solved = film_sweeps.lubricated_films
+
+    def sometimes(*arguments, nodes, **options):
+        films = solved(*arguments, nodes=nodes, **options)
+        return films if nodes != 84 else films._replace(couette=films.couette * np.nan)
+
+    ranges = {name: (low, low) for name, (low, _) in RANGES.items()}
+    surface, options = named_surface("paper_reference"), {"speeds": 9, "checked": 0}
+    whole = build_film_table(ranges, surface, **options)
+    monkeypatch.setattr(film_sweeps, "lubricated_films", sometimes)
+    # with more nodes a film may be found
+    again = build_film_table(ranges, surface, **options, nodes=84)
+    assert np.abs(again.coefficients - whole.coefficients)[:10].max() < 0.1
+    monkeypatch.setattr(
+        film_sweeps, "lubricated_films", lambda *a, **o: solved(*a, **o)._replace(couette=np.nan)
+    )
+    with pytest.raises(InputError, match=r"No film was found for a cylinder of radius 0\.00453 m"):
+        build_film_table(ranges, surface, **options)
+
+
+def test_smooth_films_between_and_below_their_points():
+    log_number = np.array([-12.3, -8.05, -3.3, 0.11, 2.2, 5.5])
+    smooth = smooth_films()
+    found = smooth(log_number, range(4))
+    modulus = 4 / np.pi
+    hertz = line_contact(1.0, 1.0, modulus)
+    for place, number in enumerate(np.exp(log_number)):
+        films = lubricated_films(
+            number / lubrication_number_per_product(1.0, hertz), 1.0, 1.0, modulus, nodes=320
+        )
+        # b/Rc = 1 here: λ/(3π)∫θ dX/H, ∫H dP_f/π and films in their own unit
+        assert np.exp(found[0][place]) == pytest.approx(films.central_film[0], rel=2e-3)
+        assert np.exp(found[1][place]) == pytest.approx(3 * np.pi * films.couette[0] / number, rel=3e-3)
+        assert np.exp(found[2][place]) == pytest.approx(np.pi * films.pressure_flow[0], rel=2e-3)
+        assert np.exp(found[3][place]) == pytest.approx(films.minimum_film[0], rel=6e-3)
+    value, slope = smooth(np.array([-16.0, -15.0]), range(1), slope=True)
+    assert slope == pytest.approx(0.6, abs=5e-3)  # the isoviscous-elastic limit
+    assert value[1] - value[0] == pytest.approx(slope[0], rel=1e-3)
+
+
 def test_wrong_inputs_are_named():
     with pytest.raises(InputError, match="need exactly young_modulus_layer"):
         build_film_table({"rms_height": (1e-6, 2e-6)}, named_surface("paper_reference"))
@@ -214,7 +260,7 @@ def test_the_key_tells_tables_apart():
         film_table_key(RANGES, surface, area_correction=1.0),
         film_table_key(RANGES, surface, counts={"rms_height": 9}),
         film_table_key(RANGES, surface, speeds=32),
-        film_table_key(RANGES, surface, nodes=96),
+        film_table_key(RANGES, surface, nodes=97),
         film_table_key(RANGES, surface, checked=0),
     ]
     texts = {json.dumps(other, sort_keys=True) for other in (key, *others)}
