@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import LayeredSkin, mean_separation
+from skinbayes.contact import mean_separation
 from skinbayes.wetting._chebyshev import lobatto
 from skinbayes.wetting._curve import Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
@@ -33,10 +34,17 @@ class Bridged(NamedTuple):
     height: FloatArray
     table: BridgeTable | None
 
-    def with_skin(self, skin: LayeredSkin) -> Bridged:
-        """The same with other layers."""
+    def with_layer(self, modulus: FloatArray) -> Bridged:
+        """The same with other moduli of the layer, Pa, shape ``(B,)``."""
+        skin = replace(self.source.skin, young_modulus_layer=modulus)
         source = GapSource(self.source.spectrum, skin, self.source.area_correction, self.source.closure)
         return self._replace(source=source)
+
+    def select(self, rows: IndexArray) -> Bridged:
+        """Some of the skins."""
+        return Bridged(
+            self.load[rows], self.pull[rows], self.source.select(rows), self.height[rows], self.table
+        )
 
     def flooded(self) -> tuple[FloatArray, BoolArray, Curve | None]:
         """Flooded film ū(p0), m, and which skins the table knows, shape ``(B,)``; and the curves of these."""
@@ -80,6 +88,8 @@ class Bridged(NamedTuple):
 
     def log_pressure(self, films: FloatArray) -> FloatArray:
         """ln p, p in Pa, at films, m, of shape ``(B, F)``; nan where a parameter is impossible."""
+        if not (self.pull > 0).any():
+            return np.asarray(np.log(self.load + 0 * self.pull)[:, None] + np.zeros(films.shape))
         separation, known, curve = self.flooded()
         possible = np.isfinite(self.load * self.pull * separation)
         found = np.where(possible, np.log(self.load), np.nan)[:, None] + np.zeros(films.shape)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import prod
@@ -206,15 +205,10 @@ def film_contact(
         flat_skin = map_skin(skin, flat)
         bridged = Bridged(load, pull, GapSource(surface, flat_skin, gamma, closure), height, table)
 
-        def area_of(pressure: FloatArray, layer: LayeredSkin) -> FloatArray:
-            variance = np.asarray(stress_variance(surface, layer))
-            parts = (x[..., None] for x in (variance, limit, gamma))
-            return np.asarray(elastoplastic_contact_area(pressure, *parts).total)
-
         lowest = np.where(flat(floor) > 0, flat(floor), np.nan)
         if half is None and closure == "gaussian":
             films, log_pressure = bridged.path(_FILMS, lowest)
-            log_area = np.log(area_of(np.exp(log_pressure), flat_skin))
+            log_area = _log_area(bridged.source, limit, np.exp(log_pressure))
             log_films = _finer(np.log(films))
             grid = _ascending(np.exp(log_films), films)
         else:
@@ -223,16 +217,14 @@ def film_contact(
             films = start + (flooded[:, None] - start) * lobatto(_FILMS)
             grid = start + (flooded[:, None] - start) * lobatto(_POINTS)
 
-            def pressed(layer: LayeredSkin) -> FloatArray:
-                return np.log(area_of(np.exp(bridged.with_skin(layer).log_pressure(films)), layer))
-
             log_area = (
-                pressed(flat_skin)
+                _log_area(bridged.source, limit, np.exp(bridged.log_pressure(films)))
                 if half is None
-                else _hardened(films, flat_skin, dry, flat(half), flat(power), pressed)
+                else _hardened(films, bridged, dry, limit, flat(half), flat(power))
             )
         fine = np.exp(_finer(log_area))
-        dry_area = area_of(load[:, None], _with_layer(flat_skin, dry))[:, 0]
+        stiff = bridged.with_layer(dry)
+        dry_area = np.exp(_log_area(stiff.source, limit, load[:, None]))[:, 0]
         grid, fine = (np.where(np.isfinite(x), x, np.nan).reshape(*batch, _POINTS) for x in (grid, fine))
         return FilmContact(grid, fine, np.broadcast_to(dry_area, load.shape).reshape(batch)[()])
 
@@ -258,32 +250,36 @@ def _ascending(grid: FloatArray, films: FloatArray) -> FloatArray:
     return grid
 
 
+def _log_area(source: GapSource, limit: FloatArray, pressure: FloatArray) -> FloatArray:
+    """ln A/A0 under pressures, Pa, of shape ``(B, F)`` with the yield stress ``limit``, Pa, of shape ``(B,)``."""
+    variance = np.asarray(stress_variance(source.spectrum, source.skin))
+    parts = (x[..., None] for x in (variance, limit, np.asarray(source.area_correction)))
+    return np.log(elastoplastic_contact_area(pressure, *parts).total)
+
+
 def _hardened(
     films: FloatArray,
-    skin: LayeredSkin,
+    bridged: Bridged,
     dry: FloatArray,
+    limit: FloatArray,
     half: FloatArray,
     power: FloatArray,
-    pressed: Callable[[LayeredSkin], FloatArray],
 ) -> FloatArray:
     """ln A/A0 at films of shape ``(B, n)`` whose layer hardens, interpolated between skins of a few moduli."""
-    wet = np.broadcast_to(np.asarray(skin.young_modulus_layer), dry.shape)
-    steps = np.log(dry / wet)
-    curves = [pressed(_with_layer(skin, wet * np.exp(steps * share))) for share in lobatto(_MODULI)]
-    parts = coefficients(np.stack([curve.reshape(-1) for curve in curves], axis=-1)[..., None])[..., 0]
+    wet = np.broadcast_to(np.asarray(bridged.source.skin.young_modulus_layer), dry.shape)
+    # each skin with all its moduli, one after the other
+    rows = np.repeat(np.arange(dry.size), _MODULI)
+    moduli = wet[:, None] * np.exp(np.log(dry / wet)[:, None] * lobatto(_MODULI))
+    many = bridged.select(rows).with_layer(moduli.reshape(-1))
+    # without any bridges all films press alike
+    distinct = films if (bridged.pull > 0).any() else films[:, :1]
+    pressure = np.exp(many.log_pressure(distinct[rows]))
+    curves = _log_area(many.source, limit[rows], pressure).reshape(dry.size, _MODULI, -1)
+    curves = np.broadcast_to(np.moveaxis(curves, 1, 2), (*films.shape, _MODULI))
+    parts = coefficients(curves.reshape(-1, _MODULI, 1))[..., 0]
     wetness = films / np.where(half > 0, half, np.nan)[..., None]
     one = np.ones(())
     share = softened_modulus(one, np.e * one, wetness, np.where(power > 0, power, np.nan)[..., None])
     wet_share = np.log(share)
     left = 1 - wet_share / wet_share[..., -1:]  # 0 where the gap is flooded
     return clenshaw(parts, 2 * left.reshape(-1, 1) - 1)[0].reshape(films.shape)
-
-
-def _with_layer(skin: LayeredSkin, modulus: FloatArray) -> LayeredSkin:
-    return LayeredSkin(
-        modulus,
-        skin.young_modulus_bulk,
-        skin.poisson_ratio_layer,
-        skin.poisson_ratio_bulk,
-        skin.layer_thickness,
-    )
