@@ -113,6 +113,10 @@ _ALL = (
     _closed("shear_rate", "γ̇", "1/s", "shear rate"),
     _closed("speed_viscosity_product", "ηv", "N/m", "viscosity times sliding speed"),
     Quantity("velocity_shift_factor", "a", "1", "theory is evaluated at a·ηv"),
+    Quantity(
+        "inlet_film_limit", "3πηv/f_N", "1", "largest 3π ηv over load per length at which friction is predicted"
+    ),
+    _closed("additive_friction", "μ_add", "1", "friction that adds to that of the theory, whatever the speed"),
     _closed(
         "friction_coefficient_boundary", "μ_b", "1", "part of the friction made in the area of real contact"
     ),

@@ -91,7 +91,7 @@ def sample(
     if folder is not None:
         claim_run(folder, problem, resume)
     started, processor = time.perf_counter(), time.process_time()
-    problem.prepare()  # before work is shared out, so that it is done once
+    problem.prepare(cores=cores)  # before work is shared out, so that it is done once
     target = problem.target()
     store = None if folder is None else SampleStore(folder / STEPS, resume=resume)
     chains = run_ensembles(target, settings, store=store, progress=progress)

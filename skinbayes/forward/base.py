@@ -90,7 +90,7 @@ class ForwardModel:
     explain : sentences on why predictions are missing (NaN) or doubtful, or None
     flags : ``(inputs, tables) -> {flag: (B, N)}``, true where a prediction is at the edge of what the theory can say, or None
     flag_meanings : what each flag says, a clause
-    prepare : ``(ranges, tables, progress) ->`` the same model with a faster evaluation for inputs within ranges, or None
+    prepare : ``(ranges, tables, progress, cores) ->`` the same model with a faster evaluation within ranges, or None
     accuracy : a sentence on the error of the evaluation, empty if it is that of the physics below
     uses_flow_curves : True if flow curves of liquids may stand for ``viscosity``
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
@@ -113,7 +113,7 @@ class ForwardModel:
     explain: Callable[[Inputs, Tables], list[str]] | None = None
     flags: Callable[[Inputs, Tables], dict[str, NDArray[np.bool_]]] | None = None
     flag_meanings: Mapping[str, str] = field(default_factory=dict)
-    prepare: Callable[[Ranges, Tables, Progress | None], ForwardModel] | None = None
+    prepare: Callable[[Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""
     abscissa: Callable[[Inputs, Tables], FloatArray] | None = None
     uses_flow_curves: bool = False

@@ -2,87 +2,64 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.alike_rows import along_rows
-from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
-from skinbayes.forward.contact_inputs import (
-    SKIN_DEFAULTS,
-    SKIN_INPUTS,
-    skin_of,
-    spectrum_of,
-    validate_contact,
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Progress, Ranges, Tables
+from skinbayes.forward.contact_inputs import SKIN_DEFAULTS, SKIN_INPUTS, spectrum_of, validate_contact
+from skinbayes.forward.stribeck_direct import (
+    FIELDS,
+    FLAGS,
+    curve_of,
+    solve,
+    speed_viscosity_product_of,
 )
-from skinbayes.lubrication import StribeckCurve, stribeck_curve
+from skinbayes.forward.stribeck_table import prepare
+from skinbayes.lubrication import LARGEST_STRAIN, THICKEST_FILM
 from skinbayes.roughness import rms_slope
 
 SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
 """How the abscissa can be given; the first complete alternative is used."""
 
-FIELDS = {
-    "friction_coefficient": "friction_coefficient",
-    "friction_coefficient_boundary": "boundary",
-    "friction_coefficient_couette": "couette",
-    "friction_coefficient_pressure_flow": "pressure_flow",
-    "asperity_load_share": "asperity_load_share",
-    "minimum_film_thickness": "minimum_film",
-    "central_film_thickness": "central_film",
+SILENT = {
+    "impossible": "an input is not physical",
+    "too_strained": f"the contact is wider than {LARGEST_STRAIN:g} of the cylinder's radius (b/Rc)",
+    "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
+    "not_converged": "no film was found",
 }
-"""Observables and the fields of the curve they are."""
-
-
-def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
-    """Return ηv [N/m]: as given, or viscosity times sliding speed."""
-    if "speed_viscosity_product" in inputs:
-        return np.asarray(inputs["speed_viscosity_product"], dtype=float)
-    return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
-
-
-def _curve(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCurve:
-    return stribeck_curve(
-        products[0],
-        inputs["sphere_radius"],
-        inputs["normal_force"],
-        skin_of(inputs),
-        spectrum_of(inputs, tables),
-        inputs["frictional_shear_stress"],
-        inputs["area_correction"],
-        inputs["velocity_shift_factor"],
-    )
-
-
-def _observables(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:
-    curve = _curve(inputs, products, tables)
-    return {name: np.asarray(getattr(curve, field)) for name, field in FIELDS.items()}
-
-
-def _along(inputs: Inputs) -> dict[str, FloatArray]:
-    """The inputs that enter, with the abscissa as one of them."""
-    known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
-    return {
-        **{name: value for name, value in known.items() if name not in ("viscosity", "sliding_speed")},
-        "speed_viscosity_product": speed_viscosity_product_of(inputs),
-    }
+"""Why there may be no prediction."""
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    return along_rows(_along(inputs), "speed_viscosity_product", partial(_observables, tables=tables))
+    found = solve(inputs, tables, MODEL.input_names())
+    return {name: found[name] for name in FIELDS}
+
+
+def _flags(inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+    found = solve(inputs, tables, MODEL.input_names())
+    return {name: found[name] > 0 for name in FLAGS}
 
 
 def _explain(inputs: Inputs, tables: Tables) -> list[str]:
     """Why points of the curve are missing or doubtful."""
-    said: list[str] = []
-
-    def collect(common: Inputs, products: FloatArray) -> dict[str, FloatArray]:
-        curve = _curve(common, products, tables)
-        said.extend(reason for reason in curve.reasons() if reason not in said)
-        return {"friction_coefficient": np.asarray(curve.friction_coefficient)}
-
-    along_rows(_along(inputs), "speed_viscosity_product", collect)
+    found = solve(inputs, tables, MODEL.input_names())
+    said = []
+    for name, reason in (SILENT | FLAGS).items():
+        count, total = int(np.count_nonzero(found[name])), found[name].size
+        if count:
+            said.append(f"{count} of {total} points: {reason}.")
     return said
+
+
+def _abscissa(inputs: Inputs, tables: Tables) -> FloatArray:
+    if tables.flow_curves is None:
+        return speed_viscosity_product_of(inputs)
+    return solve(inputs, tables, MODEL.input_names())["speed_viscosity_product"]
+
+
+def _prepare(ranges: Ranges, tables: Tables, progress: Progress | None, cores: int) -> ForwardModel:
+    return prepare(MODEL, ranges, tables, progress, cores)
 
 
 def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
@@ -94,7 +71,8 @@ def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
 
 
 def _profile(inputs: Inputs, tables: Tables, products: FloatArray) -> FloatArray:
-    return np.asarray(_curve(inputs, products[np.newaxis], tables).friction_coefficient)
+    friction = np.asarray(curve_of(inputs, products, tables).friction_coefficient)
+    return friction + np.asarray(inputs.get("additive_friction", 0.0))[..., np.newaxis]
 
 
 MODEL = ForwardModel(
@@ -105,10 +83,17 @@ MODEL = ForwardModel(
     optional={
         **{name: value for name, value in SKIN_DEFAULTS.items() if name != "yield_stress"},
         "velocity_shift_factor": 1.0,
+        "additive_friction": 0.0,
+        "inlet_film_limit": THICKEST_FILM,
     },
     evaluate=_evaluate,
     validate=validate_contact,
     explain=_explain,
+    flags=_flags,
+    flag_meanings=FLAGS,
+    prepare=_prepare,
+    abscissa=_abscissa,
+    uses_flow_curves=True,
     derived=_derived,
     derived_names=("rms_slope",),
     blocks=("rms_slope",),

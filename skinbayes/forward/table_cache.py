@@ -77,9 +77,9 @@ def _write(path: Path, key: str, found: Stored) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("wb") as file:
-            np.savez_compressed(
-                file, note=np.array(json.dumps({"key": key, "metadata": dict(metadata)})), **dict(arrays)
-            )
+            note = np.array(json.dumps({"key": key, "metadata": dict(metadata)}))
+            everything: dict[str, Any] = {"note": note, **arrays}
+            np.savez_compressed(file, **everything)
         temporary.replace(path)
     except OSError:  # a cache is a convenience
         with suppress(OSError):

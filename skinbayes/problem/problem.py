@@ -122,16 +122,17 @@ class Problem:
         """The forward model as it is evaluated: prepared for the ranges of the priors if it can be and there are any."""
         return self.prepare()
 
-    def prepare(self, progress: Progress | None = None) -> ForwardModel:
+    def prepare(self, progress: Progress | None = None, cores: int = 1) -> ForwardModel:
         """Build what the forward model wants to have ready before many evaluations, such as a table; once.
 
-        ``progress`` is called with steps done and their total. Without data or free parameters nothing is built.
+        ``progress`` is called with steps done and their total; ``cores`` processes share the work. Without data or free
+        parameters nothing is built.
         """
         if "model" in self.__dict__:
             return self.model
         prepared = self.forward
         if prepared.prepare is not None and self.observations and self.free:
-            prepared = prepared.prepare(input_ranges(self), self.tables, progress)
+            prepared = prepared.prepare(input_ranges(self), self.tables, progress, cores)
         self.__dict__["model"] = prepared
         return prepared
 

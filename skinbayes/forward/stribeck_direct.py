@@ -1,0 +1,181 @@
+"""Stribeck curves by the film solver itself: exact, some tenths of a millisecond for a point."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.contact import LayeredSkin, cylinder_of_sphere, line_contact, reduced_modulus
+from skinbayes.forward.alike_rows import along_rows
+from skinbayes.forward.base import Inputs, Tables
+from skinbayes.forward.contact_inputs import skin_of, spectrum_of
+from skinbayes.lubrication import (
+    LARGE_STRAIN,
+    NOTABLE_STRAIN,
+    THICKEST_FILM,
+    StribeckCurve,
+    stribeck_curve,
+    stribeck_curve_of_liquid,
+)
+
+NOTABLE_FILM = THICKEST_FILM / 5
+"""3π ηv/f_N beyond which a prediction is marked: the share of the load beyond the edge of the ball grows to a fifth at five
+times this."""
+
+FIELDS = {
+    "friction_coefficient": "friction_coefficient",
+    "friction_coefficient_boundary": "boundary",
+    "friction_coefficient_couette": "couette",
+    "friction_coefficient_pressure_flow": "pressure_flow",
+    "asperity_load_share": "asperity_load_share",
+    "minimum_film_thickness": "minimum_film",
+    "central_film_thickness": "central_film",
+}
+"""Observables and the fields of the curve they are."""
+
+FLAGS = {
+    "strained": f"the contact is strained (b/Rc above {NOTABLE_STRAIN:g}), where Hertz's theory is stretched",
+    "largely_strained": f"the contact is nearly half as wide as the ball, or wider (b/Rc above {LARGE_STRAIN:g})",
+    "film_near_inlet": f"the film is thick for the inlet that the ball offers (3π ηv/f_N above {NOTABLE_FILM:g})",
+    "film_beyond_inlet": f"the film is thicker than the inlet that the ball offers (3π ηv/f_N above {THICKEST_FILM:g}), so "
+    "that more than a fifth of the load is carried beyond its edge",
+    "shear_rate_unmeasured": "the liquid is sheared at a rate for which its viscosity was not measured",
+}
+"""Flags and what they say."""
+
+_CURVE = "flow_curve"  # number of the flow curve of a row, among the inputs
+
+
+def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
+    """Return ηv [N/m]: as given, or viscosity times sliding speed."""
+    if "speed_viscosity_product" in inputs:
+        return np.asarray(inputs["speed_viscosity_product"], dtype=float)
+    return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
+
+
+def curve_of(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCurve:
+    """The curve of Newtonian liquids for inputs that broadcast to ``(B,)`` at products ηv of shape ``(K,)``."""
+    return stribeck_curve(
+        products,
+        inputs["sphere_radius"],
+        inputs["normal_force"],
+        skin_of(inputs),
+        spectrum_of(inputs, tables),
+        inputs["frictional_shear_stress"],
+        inputs["area_correction"],
+        inputs["velocity_shift_factor"],
+        thickest_film=film_limit_of(inputs),
+    )
+
+
+def film_limit_of(inputs: Inputs) -> float:
+    """Return the largest 3π ηv/f_N at which friction is predicted."""
+    return float(np.ravel(inputs["inlet_film_limit"])[0])
+
+
+def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, FloatArray]:
+    """Observables, flags and reasons of the film solver by name, each ``(B, N)``.
+
+    Parameters
+    ----------
+    inputs : inputs of the forward model, others are left aside
+    tables : with flow curves if viscosities are to follow from the film
+    names : inputs of the forward model
+
+    Returns
+    -------
+    dict
+        Observables of `FIELDS`, flags of `FLAGS` (as 0 and 1), the reasons of silence of `StribeckCurve`, and
+        ``speed_viscosity_product`` with the viscosity in the film.
+    """
+    known = {name: value for name, value in inputs.items() if name in names}
+    for name in ("viscosity", "sliding_speed", "additive_friction"):
+        known.pop(name, None)
+    if tables.flow_curves is None:
+        known["speed_viscosity_product"] = speed_viscosity_product_of(inputs)
+        found = along_rows(known, "speed_viscosity_product", partial(_newtonian, tables=tables))
+    else:
+        known.pop("speed_viscosity_product", None)
+        curves = list({id(curve): curve for curve in tables.flow_curves}.values())
+        place = {id(curve): float(i) for i, curve in enumerate(curves)}
+        known[_CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
+        known["sliding_speed"] = inputs["sliding_speed"]
+        distinct = Tables(tables.spectrum, tuple(curves))
+        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct))
+    found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
+    return found
+
+
+def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.bool_]]:
+    """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast."""
+    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
+    cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], modulus)
+    with np.errstate(invalid="ignore"):
+        share = 3 * np.pi * products * inputs["velocity_shift_factor"] / np.asarray(cylinder.load_per_length)
+        return {"film_near_inlet": share > NOTABLE_FILM, "film_beyond_inlet": share > THICKEST_FILM}
+
+
+def strain_of(inputs: Inputs) -> FloatArray:
+    """b/Rc of the Hertz contact, broadcast shape of the inputs."""
+    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
+    cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], modulus)
+    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, modulus)
+    return np.asarray(line.half_width / cylinder.cylinder_radius)
+
+
+def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:
+    if len(products) == 1:
+        return _everything(curve_of(inputs, products[0], tables), inputs)
+    # a load that differs by vector, or a covariate: each vector has its own abscissae
+    rows = [
+        _everything(curve_of(one, products[b], tables), one)
+        for b, one in enumerate(_one_by_one(inputs, len(products)))
+    ]
+    return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+
+
+def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str, FloatArray]:
+    assert tables.flow_curves is not None
+    batch = max(len(speeds), *(np.shape(value)[0] for value in inputs.values()))
+    rows = []
+    for b, one in enumerate(_one_by_one(inputs, batch)):
+        skin = skin_of(one)
+        number = {name: float(np.asarray(value)) for name, value in one.items()}
+        curve, _ = stribeck_curve_of_liquid(
+            speeds[b if len(speeds) > 1 else 0],
+            tables.flow_curves[int(number[_CURVE])],
+            number["sphere_radius"],
+            number["normal_force"],
+            LayeredSkin(*(float(np.asarray(part)) for part in vars(skin).values())),
+            spectrum_of(one, tables),
+            number["frictional_shear_stress"],
+            number["area_correction"],
+            number["velocity_shift_factor"],
+            thickest_film=film_limit_of(one),
+        )
+        rows.append(_everything(curve, one))
+    return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+
+
+def _one_by_one(inputs: Inputs, count: int) -> list[dict[str, FloatArray]]:
+    """Inputs that broadcast to ``(B,)`` as scalars for each of the vectors."""
+    return [
+        {name: np.asarray(value)[b if np.shape(value)[0] > 1 else 0] for name, value in inputs.items()}
+        for b in range(count)
+    ]
+
+
+def _everything(curve: StribeckCurve, inputs: Inputs) -> dict[str, FloatArray]:
+    shape = np.shape(curve.friction_coefficient)
+    found = {name: np.asarray(getattr(curve, field)) for name, field in FIELDS.items()}
+    reasons = ("impossible", "too_strained", "film_beyond_ball", "not_converged", "strained", "largely_strained",
+               "shear_rate_unmeasured")  # fmt: skip
+    found |= {name: np.asarray(getattr(curve, name), dtype=float) for name in reasons}
+    column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
+    flags = film_flags(column, curve.speed_viscosity_product)
+    found |= {name: flag.astype(float) for name, flag in flags.items()}
+    found["speed_viscosity_product"] = curve.speed_viscosity_product
+    return {name: np.broadcast_to(value, shape) for name, value in found.items()}

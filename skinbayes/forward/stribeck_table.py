@@ -1,0 +1,151 @@
+"""Stribeck curves from a table of films that is built once for the ranges of the priors and kept on disk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.forward.base import Inputs, Progress, Ranges, Tables
+from skinbayes.forward.stribeck_direct import (
+    FIELDS,
+    film_flags,
+    film_limit_of,
+    speed_viscosity_product_of,
+    strain_of,
+)
+from skinbayes.forward.table_cache import Stored, cached
+from skinbayes.lubrication import (
+    LARGE_STRAIN,
+    NOTABLE_STRAIN,
+    FilmTable,
+    build_film_table,
+    film_table_key,
+    liquid_rows,
+    tabulated_friction,
+    tabulated_friction_of_liquids,
+)
+from skinbayes.roughness import rms_height
+
+if TYPE_CHECKING:
+    from skinbayes.forward.base import ForwardModel
+
+AXES = (
+    "young_modulus_layer", "young_modulus_bulk", "rms_height", "sphere_radius", "normal_force", "layer_thickness",
+)  # fmt: skip
+"""Inputs that may vary within a table."""
+
+AFTERWARDS = (
+    "frictional_shear_stress", "velocity_shift_factor", "additive_friction", "speed_viscosity_product", "viscosity",
+    "sliding_speed", "inlet_film_limit",
+)  # fmt: skip
+"""Inputs that enter exactly, whatever the table."""
+
+
+@dataclass(frozen=True, eq=False)
+class TabulatedStribeck:
+    """Evaluation of the forward model from a table of films; picklable.
+
+    Attributes
+    ----------
+    table : films for all inputs that vary
+    names : inputs of the forward model
+    """
+
+    table: FilmTable
+    names: tuple[str, ...]
+
+    def evaluate(self, inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+        """Observables ``(B, N)``; nan for what the table does not hold, which is next to nothing of the prior."""
+        found, _ = self._friction(inputs, tables)
+        return {name: found[name] for name in FIELDS}
+
+    def flags(self, inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+        """The flags of `FLAGS`, each ``(B, N)``."""
+        found, products = self._friction(inputs, tables)
+        shape = products.shape
+        strain = np.broadcast_to(strain_of(inputs), shape)
+        return {
+            "strained": strain > NOTABLE_STRAIN,
+            "largely_strained": strain > LARGE_STRAIN,
+            **{name: np.broadcast_to(flag, shape) for name, flag in film_flags(inputs, products).items()},
+            "shear_rate_unmeasured": found["shear_rate_unmeasured"] > 0,
+        }
+
+    def abscissa(self, inputs: Inputs, tables: Tables) -> FloatArray:
+        """Speed times the viscosity in the film, N/m, ``(B, N)``."""
+        return self._friction(inputs, tables)[1]
+
+    def _friction(self, inputs: Inputs, tables: Tables) -> tuple[dict[str, FloatArray], FloatArray]:
+        parameters = {name: inputs[name] for name in AXES if name in inputs}
+        if "rms_height" not in parameters and tables.spectrum is not None:
+            parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
+        stress, shift = inputs["frictional_shear_stress"], inputs["velocity_shift_factor"]
+        others = (parameters, stress, shift, True, film_limit_of(inputs))
+        if tables.flow_curves is None:
+            products = speed_viscosity_product_of(inputs)
+            friction = tabulated_friction(self.table, products, *others)
+            unmeasured = np.zeros(friction.friction_coefficient.shape)
+        else:
+            friction, liquid = tabulated_friction_of_liquids(
+                self.table, inputs["sliding_speed"], liquid_rows(tables.flow_curves), *others
+            )
+            products = inputs["sliding_speed"] * liquid.viscosity
+            unmeasured = liquid.unmeasured.astype(float)
+        found = {name: np.array(getattr(friction, field)) for name, field in FIELDS.items()}
+        found["shear_rate_unmeasured"] = unmeasured
+        products = np.array(np.broadcast_to(products, unmeasured.shape))
+        found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
+        return found, products
+
+
+def prepare(
+    model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
+) -> ForwardModel:
+    """The forward model with a table of films for the ranges, from disk if it was built before.
+
+    Inputs of `AXES` may vary, those of `AFTERWARDS` may do what they like; where anything else varies the film solver
+    itself is used, which is slow.
+    """
+    names = model.input_names()
+    varying = [
+        name
+        for name, (low, high) in ranges.items()
+        if low != high and name in names and name not in (*AXES, *AFTERWARDS)
+    ]
+    if varying:
+        return replace(
+            model,
+            accuracy=f"Each curve is solved by itself, which is slow: a table of films cannot be used while "
+            f"{' and '.join(varying)} {'varies' if len(varying) == 1 else 'vary'}.",
+        )
+    fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
+    from skinbayes.forward.contact_inputs import spectrum_of
+
+    spectrum = spectrum_of(fixed, tables)
+    held = {name: ranges[name] for name in AXES if name in ranges}
+    held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
+    layer, bulk, gamma = (
+        float(fixed[name]) for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+    )
+
+    def build() -> Stored:
+        table = build_film_table(held, spectrum, layer, bulk, gamma, processes=cores, progress=progress)
+        return table.to_arrays()
+
+    stored = cached("stribeck", film_table_key(held, spectrum, layer, bulk, gamma), build)
+    table = FilmTable.from_arrays(*stored)
+    tabulated = TabulatedStribeck(table, names)
+    middle, far, worst = (100 * float(error) for error in table.held_out)
+    return replace(
+        model,
+        evaluate=tabulated.evaluate,
+        flags=tabulated.flags,
+        abscissa=tabulated.abscissa,
+        accuracy=f"Friction is read from a table of films; at {table.held_out_count} places that it was not made from it "
+        f"differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and {worst:.2g} % at "
+        "worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as impossible.",
+    )
