@@ -155,11 +155,29 @@ class Fit:
 
         return plot_prior_predictive(self)
 
-    def plot_profile(self) -> Figure:
-        """Curves of the forward model with their posterior bands, such as contact area against magnification."""
+    def plot_profile(self, abscissa: str | None = None) -> Figure:
+        """Curves of the forward model with posterior bands and data, against one quantity (the first it offers)."""
         from skinbayes.plot import plot_profile
 
-        return plot_profile(self)
+        return plot_profile(self, abscissa)
+
+    def plot_levels(self, column: str | None = None) -> Figure:
+        """Data over posterior bands, a panel for each level of a grouping column such as ``person``."""
+        from skinbayes.plot import plot_levels
+
+        return plot_levels(self, column)
+
+    def plot_effects(self) -> Figure:
+        """Effects of groups, and the residuals of their rows."""
+        from skinbayes.plot import plot_effects
+
+        return plot_effects(self)
+
+    def plot_residuals(self) -> Figure:
+        """What is left between data and model, against the abscissa and the conditions."""
+        from skinbayes.plot import plot_residuals
+
+        return plot_residuals(self)
 
     def save(self, path: str | Path) -> Path:
         """Write the result as one netCDF file in the ArviZ schema."""

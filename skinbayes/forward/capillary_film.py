@@ -9,7 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
-from skinbayes.forward.base import ForwardModel, Inputs, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
@@ -38,7 +38,13 @@ OBSERVABLES = (
 )
 
 
-def _bridged(inputs: Inputs, film: FloatArray, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
+FILMS = np.geomspace(1e-7, 1e-4, 61)
+"""Films of the curves, m: from gaps of nanometres to skin that floats, Figs. 8 to 10 of the paper."""
+
+
+def _bridged(
+    inputs: Inputs, film: FloatArray, tables: Tables, closure: Closure, refine: bool = True
+) -> dict[str, FloatArray]:
     state = capillary_state(
         film,
         nominal_pressure_of(inputs),
@@ -49,6 +55,7 @@ def _bridged(inputs: Inputs, film: FloatArray, tables: Tables, closure: Closure)
         inputs["contact_angle_counterface"],
         inputs["area_correction"],
         closure,
+        refine,
     )
     return {name: np.asarray(getattr(state, name)) for name in OBSERVABLES}
 
@@ -57,6 +64,38 @@ def _evaluate(inputs: Inputs, tables: Tables, closure: Closure) -> dict[str, Flo
     # noise that differs by row must not part rows that share a curve
     known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
     return along_rows(known, "film_thickness", partial(_bridged, tables=tables, closure=closure))
+
+
+def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
+    return FILMS
+
+
+def _profile(
+    inputs: Inputs, tables: Tables, film: FloatArray, observable: str, closure: Closure
+) -> FloatArray:
+    # good to 1e-4 in the Gaussian closure, which no line shows
+    return _bridged(inputs, film[np.newaxis], tables, closure, refine=closure != "gaussian")[observable]
+
+
+def film_profiles(closure: Closure) -> tuple[Profile, ...]:
+    """Contact area, wet area and separations against the water film, one below the other."""
+    titles = {
+        "relative_contact_area": "Contact area against the water film",
+        "wet_area": "Wet area against the water film",
+        "mean_separation": "Mean separation against the water film",
+        "mean_separation_wet": "Mean separation in the wet area against the water film",
+    }
+    return tuple(
+        Profile(
+            name=f"{observable}_against_film",
+            title=title,
+            abscissa="film_thickness",
+            ordinate=observable,
+            grid=_grid,
+            evaluate=partial(_profile, observable=observable, closure=closure),
+        )
+        for observable, title in titles.items()
+    )
 
 
 def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardModel:
@@ -72,6 +111,7 @@ def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardMo
         derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),
+        profiles=film_profiles(closure),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
-from skinbayes.forward.capillary_film import Closure
+from skinbayes.forward.capillary_film import Closure, film_profiles
 from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
@@ -97,7 +97,7 @@ def drying_model(name: str, summary: str, closure: Closure) -> ForwardModel:
         derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),
-        profiles=_timeline(closure),
+        profiles=(*_timeline(closure), *film_profiles(closure)),
     )
     return replace(model, prepare=partial(prepared_drying, model=model)) if closure == "gaussian" else model
 

@@ -1,19 +1,29 @@
-"""Curves of the forward model with their posterior bands: the contact area against magnification (Fig. 6)."""
+"""Curves of the forward model with their posterior bands and the data: contact area against magnification, drying in time."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.plot.numbers import quantity
-from skinbayes.plot.predictive import row_names
-from skinbayes.plot.scales import scale_for, ticks
-from skinbayes.plot.style import SERIES, WIDTH, look, new_figure, sentence_figure, set_title
-from skinbayes.plot.symbols import figure_text, spoken_name
-from skinbayes.vocabulary import QUANTITIES
+from skinbayes.plot.predictive import observables, observed_values
+from skinbayes.plot.profile_bands import Band, profile_bands
+from skinbayes.plot.rows import abscissa_of_rows
+from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks
+from skinbayes.plot.style import (
+    OBSERVED,
+    POSTERIOR,
+    SERIES,
+    WIDTH,
+    look,
+    new_figure,
+    sentence_figure,
+    set_title,
+)
+from skinbayes.plot.symbols import axis_name, figure_text
+from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,152 +33,143 @@ if TYPE_CHECKING:
     from skinbayes.forward import Profile
     from skinbayes.problem import Problem
 
-DRAWS = 300
-"""Posterior draws that a band is made of."""
-
-MOST_CURVES = 4
-
-SAME = 1e-3
-"""Rows whose curves agree within this relative difference share one curve."""
+TITLES = {"time": "Drying in time", "film_thickness": "Skin against the water film"}
+"""Titles of figures of several curves by their abscissa."""
 
 
-@dataclass(frozen=True)
-class Band:
-    """One curve: its label, the abscissa ``(K,)`` and the 5, 50 and 95 % quantiles of the ordinate ``(3, K)``, SI."""
-
-    label: str
-    abscissa: FloatArray
-    quantiles: FloatArray
-
-
-def plot_profile(fit: Fit) -> Figure:
-    """Draw the curves that the forward model offers, with posterior median and 5–95 % band.
+def plot_profile(fit: Fit, abscissa: str | None = None) -> Figure:
+    """Draw the curves that the forward model offers, with posterior median and bands, and the data that lie on them.
 
     Parameters
     ----------
     fit : a fit with its problem
+    abscissa : quantity on the common axis, one of :func:`profile_abscissas`; the first if omitted
 
     Returns
     -------
     matplotlib.figure.Figure
-        One panel for each curve of the forward model, one colour for each group of rows that share it; where more than
-        four differ, those that end lowest, in the middle and highest. A sentence if there is nothing to draw.
+        One panel for each curve over that abscissa, one below the other. One colour for each group of rows that share a curve;
+        where more than four differ, those that end lowest, in the middle and highest. Bands hold 90 %, for a single curve
+        also 50 % of the posterior; scatter and effects of groups are not in them. Dots are the data, with their standard
+        deviations where these are known. A sentence if there is nothing to draw.
     """
     title = "Curves of the model"
     if fit.problem is None:
         return sentence_figure(
             fit, title, "The model or its data are gone, so that no curve can be computed from this result."
         )
-    profiles = fit.problem.forward.profiles
-    if not profiles:
+    offered = profile_abscissas(fit.problem)
+    if not offered:
         return sentence_figure(fit, title, f"The forward model '{fit.problem.forward.name}' has no curves.")
+    abscissa = abscissa or offered[0]
+    profiles = [profile for profile in fit.problem.model.profiles if profile.abscissa == abscissa]
+    if not profiles:
+        return sentence_figure(
+            fit, title, f"The model has no curve against {abscissa}; it has {', '.join(offered)}."
+        )
+    drawn = [(profile, profile_bands(fit, fit.problem, profile)) for profile in profiles]
+    lines = max(len(bands) for _, bands in drawn)
+    zoom = None if abscissa != "wavevector" else _smallest_wavevector(fit.problem)
+    key = 0.22 * (lines if lines > 1 else 1) + 0.1
+    height, top = (3.1 if len(drawn) == 1 else 2.0), 0.45 if zoom is None else 0.9
     with look():
         figure = new_figure(
-            WIDTH, 4.0 * len(profiles), left=0.8, right=0.3, bottom=0.55, top=0.9, between=(0.0, 1.4),
-            panels=(1, len(profiles)),
+            WIDTH, height * len(drawn) + 0.15 * (len(drawn) - 1) + top + key + 0.5, left=0.85, right=0.3,
+            bottom=key + 0.5, top=top, between=(0.0, 0.15), panels=(1, len(drawn)),
         )  # fmt: skip
-
-        axes = figure.subplots(len(profiles), 1, squeeze=False)[:, 0]
-        for ax, profile in zip(axes, profiles, strict=True):
-            _panel(ax, fit.problem, profile, profile_bands(fit, fit.problem, profile))
-        set_title(figure, fit, profiles[0].title if len(profiles) == 1 else title)
+        axes = figure.subplots(len(drawn), 1, squeeze=False, sharex=True)[:, 0]
+        for ax, (profile, bands) in zip(axes, drawn, strict=True):
+            _panel(ax, fit, fit.problem, profile, bands)
+        shown = scale_for(axis_name(abscissa)[0], *(band.abscissa for _, bands in drawn for band in bands))
+        axes[-1].set_xlabel(shown.label(axis_name(abscissa)[1]))
+        if zoom is not None:
+            _magnification_axis(axes[0], zoom / shown.factor)
+        _key(figure, axes, lines)
+        set_title(figure, fit, drawn[0][0].title if len(drawn) == 1 else TITLES.get(abscissa, title))
     return figure
 
 
-def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
-    """The curves of one profile, at most four, each for a group of rows that share it."""
-    theta = fit.theta()
-    middle = np.median(theta, axis=0, keepdims=True)
-    theta = theta[:: max(1, len(theta) // DRAWS)]
-    groups = _groups(problem, profile, middle)
-    shared = len(groups) == 1
-    names, bands = row_names(fit), []
-    for position, rows in groups:
-        abscissa, curves = problem.profile(profile, theta, rows[0])
-        label = position + _row_text(names, rows, shared) + _pressure(problem, middle, rows)
-        bands.append(Band(label, abscissa, np.nanquantile(curves, [0.05, 0.5, 0.95], axis=0)))
-    return bands
+def profile_abscissas(problem: Problem) -> list[str]:
+    """Quantities against which the forward model offers curves, in its order."""
+    return list(dict.fromkeys(profile.abscissa for profile in problem.model.profiles))
 
 
-def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tuple[str, list[int]]]:
-    """Rows that share a curve at the posterior median, and a word for each group."""
-    groups: list[tuple[FloatArray, list[int]]] = []
-    alike: dict[tuple[float, ...], list[int]] = {}
-    differing = [
-        values[0]
-        for name, values in problem.inputs(middle).items()
-        if values.shape[-1] > 1 and name != profile.abscissa
-    ]
-    for row in range(problem.conditions.n_rows):
-        same = alike.setdefault(tuple(float(values[row]) for values in differing), [])
-        same.append(row)
-    # rows of the same inputs share a curve without it being computed again, and others may still do
-    for alike_rows in alike.values():
-        grid, curve = problem.profile(profile, middle, alike_rows[0])
-        both = np.concatenate([grid, curve[0]])
-        for known, rows in groups:
-            if np.allclose(known, both, rtol=SAME, atol=0.0, equal_nan=True):
-                rows[:] = sorted([*rows, *alike_rows])
-                break
-        else:
-            groups.append((both, list(alike_rows)))
-    if len(groups) <= MOST_CURVES:
-        return [("", rows) for _, rows in groups]
-    groups.sort(key=lambda group: group[0][-1])
-    chosen = (("lowest: ", groups[0]), ("middle: ", groups[len(groups) // 2]), ("highest: ", groups[-1]))
-    return [(word, rows) for word, (_, rows) in chosen]
-
-
-def _row_text(names: list[str], rows: list[int], shared: bool) -> str:
-    if shared:
-        return "all rows" if len(names) > 1 else names[0]
-    found = [names[row] for row in rows]
-    return ", ".join(found) if len(found) <= 3 else f"{found[0]} and {len(found) - 1} more"
-
-
-def _pressure(problem: Problem, middle: FloatArray, rows: list[int]) -> str:
-    pressure = problem.derived(middle).get("nominal_pressure")
-    if pressure is None:
-        return ""
-    value = float(pressure[0, rows[0] if pressure.shape[-1] == problem.conditions.n_rows else 0])
-    return f" (p0 = {quantity(value, 'Pa', 2)})"
-
-
-def _panel(ax: Axes, problem: Problem, profile: Profile, bands: list[Band]) -> None:
-    x_quantity, y_quantity = QUANTITIES[profile.abscissa], QUANTITIES[profile.ordinate]
-    x_scale = scale_for(x_quantity.unit, *(band.abscissa for band in bands))
-    y_scale = scale_for(y_quantity.unit, *(band.quantiles.ravel() for band in bands))
-    for band, colour in zip(bands, SERIES, strict=False):
-        x, (low, median, high) = x_scale.shown(band.abscissa), y_scale.shown(band.quantiles)
-        ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0.0)
-        ax.plot(x, median, color=colour, label=figure_text(band.label))
-    for scale, setter, axis, limits in (
-        (x_scale, ax.set_xscale, ax.xaxis, ax.set_xlim),
-        (y_scale, ax.set_yscale, ax.yaxis, ax.set_ylim),
-    ):
+def _panel(ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[Band]) -> None:
+    x_unit, _ = axis_name(profile.abscissa)
+    y_unit, y_name = axis_name(profile.ordinate)
+    x_scale = axis_scale(profile.abscissa, scale_for(x_unit, *(band.abscissa for band in bands)))
+    y_scale = scale_for(y_unit, *(band.quantiles.ravel() for band in bands))
+    if profile.abscissa == "time":  # a series is read by its heights
+        y_scale = replace(y_scale, logarithmic=False)
+    colours = [POSTERIOR] if len(bands) == 1 else list(SERIES)
+    for band, colour in zip(bands, colours, strict=False):
+        x, (low, q25, median, q75, high) = x_scale.shown(band.abscissa), y_scale.shown(band.quantiles)
+        single = len(bands) == 1
+        ax.fill_between(
+            x, low, high, color=colour, alpha=0.2, linewidth=0.0, label="5–95 %" if single else None
+        )
+        if single:
+            ax.fill_between(x, q25, q75, color=colour, alpha=0.35, linewidth=0.0, label="25–75 %")
+        ax.plot(x, median, color=colour, label="median" if single else figure_text(band.label))
+    measured = _data(ax, fit, problem, profile, bands, x_scale, y_scale)
+    for scale, setter in ((x_scale, ax.set_xscale), (y_scale, ax.set_yscale)):
         if scale.logarithmic:
             setter("log")
-        if axis is ax.xaxis:
-            low = min(float(x_scale.shown(band.abscissa).min()) for band in bands)
-            high = max(float(x_scale.shown(band.abscissa).max()) for band in bands)
-            limits(low, high)
-        else:
-            low, high = ax.get_ylim()
-        ticks(axis, scale, low, high, most=6, between=True)
+    ends = np.concatenate([x_scale.shown(band.abscissa) for band in bands] + [x_scale.shown(measured)])
+    ax.set_xlim(float(ends.min()), float(ends.max()))
+    if profile.abscissa == "time" and all(float(np.nanmin(band.quantiles)) >= 0.0 for band in bands):
+        ax.set_ylim(bottom=0.0)
+    ticks(ax.xaxis, x_scale, *ax.get_xlim(), most=6, between=True)
+    ticks(ax.yaxis, y_scale, *ax.get_ylim(), most=6, between=True)
     ax.grid(color="#E6E6E6", linewidth=0.6)
     ax.set_axisbelow(True)
-    ax.set_xlabel(x_scale.label(f"{x_quantity.name} {figure_text(x_quantity.symbol)}"))
-    ax.set_ylabel(y_scale.label(f"{spoken_name(profile.ordinate)} {figure_text(y_quantity.symbol)}"))
-    ax.legend(loc="best")
-    smallest = _smallest_wavevector(problem, profile)
-    if smallest is not None:
-        _magnification_axis(ax, smallest / x_scale.factor)
+    label = y_scale.label(y_name)
+    ax.set_ylabel(label if len(label) < 34 else label.replace(" $", "\n$", 1))
 
 
-def _smallest_wavevector(problem: Problem, profile: Profile) -> float | None:
-    """q0 if the abscissa is a wavevector and all rows and draws share its smallest value."""
-    if profile.abscissa != "wavevector":
-        return None
+def _data(
+    ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[Band], x_scale: Scale, y_scale: Scale
+) -> FloatArray:
+    """Draw the data that lie on the curve, each in the colour of its curve if that is drawn; return their abscissa, SI."""
+    along = abscissa_of_rows(problem, profile, np.median(fit.theta(), axis=0))
+    if along is None or profile.ordinate not in observables(fit):
+        return np.empty(0)
+    values = observed_values(fit).reshape(len(observables(fit)), -1)[observables(fit).index(profile.ordinate)]
+    known = fit.groups["constant_data"]
+
+    def spread(name: str, scale: Scale) -> FloatArray | None:
+        column = name + STANDARD_DEVIATION_SUFFIX
+        return scale.shown(known[column].values) if column in known else None
+
+    drawn = [(band.rows, colour) for band, colour in zip(bands, SERIES, strict=False)]
+    if len(bands) == 1 or sum(len(rows) for rows, _ in drawn) < len(values):
+        drawn = [(list(range(len(values))), OBSERVED)]
+    errors = (spread(profile.ordinate, y_scale), spread(profile.abscissa, x_scale))
+    for i, (rows, colour) in enumerate(drawn):
+        y_error, x_error = (None if error is None else error[rows] for error in errors)
+        ax.errorbar(
+            x_scale.shown(along[rows]), y_scale.shown(values[rows]), y_error, x_error, fmt="o", color=colour,
+            markersize=4.0, markeredgecolor="white", markeredgewidth=0.5, elinewidth=0.9, zorder=3,
+            label="measured" if i == 0 else None,
+        )  # fmt: skip
+    return along
+
+
+def _key(figure: Figure, axes: Any, lines: int) -> None:
+    """The key below the panels, from the first that has each entry."""
+    entries = {
+        text: handle for ax in axes for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)
+    }
+    order = ["measured", "median", "25–75 %", "5–95 %"] if lines == 1 else list(entries)
+    texts = [text for text in order if text in entries]
+    figure.legend(
+        [entries[text] for text in texts], texts, loc="lower center", ncols=len(texts) if lines == 1 else 1,
+        bbox_to_anchor=(0.5, 0.0), borderaxespad=0.2, labelspacing=0.25,
+    )  # fmt: skip
+
+
+def _smallest_wavevector(problem: Problem) -> float | None:
+    """q0 if all rows and draws share it."""
     if problem.tables.spectrum is not None:
         value = np.atleast_1d(problem.tables.spectrum.wavevector_min)
     elif any(parameter.name == "wavevector_min" for parameter in problem.free):

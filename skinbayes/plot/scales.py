@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,6 +55,11 @@ def scale_for(unit: str, *groups: FloatArray, typical: float | None = None) -> S
     factor, name = prefix_of(typical if typical is not None else float(np.median(finite[-1])), unit)
     positive = min(float(g.min()) for g in finite) > 0.0
     return Scale(factor, name, bool(positive and low > 0.0 and high / low > WIDE))
+
+
+def axis_scale(name: str, scale: Scale) -> Scale:
+    """The scale of an axis that shows a quantity: time runs evenly, whatever its range."""
+    return replace(scale, logarithmic=False) if name == "time" else scale
 
 
 def round_values(low: float, high: float, most: int = 4) -> list[float]:

@@ -23,6 +23,7 @@ _SPOKEN = (
     (re.compile(r"^rolloff wavevector"), "roll-off wavevector"),
     (re.compile(r"^relative_contact_area_(elastic|plastic)$"), r"\1 relative contact area"),
     (re.compile(r"^rms_"), "root-mean-square "),
+    (re.compile(r"^speed_viscosity_product$"), "speed times viscosity"),
     (re.compile(r"_"), " "),
 )
 
@@ -67,3 +68,17 @@ def spoken_name(label: str) -> str:
 def figure_symbol(fit: Fit, label: str) -> str:
     """Symbol of a parameter for a figure."""
     return figure_text(fit.symbol(label))
+
+
+def axis_name(name: str) -> tuple[str, str]:
+    """SI unit of a quantity, and its name and symbol for an axis; names without entry in the vocabulary have none.
+
+    Examples
+    --------
+    >>> axis_name("normal_force")
+    ('N', 'normal force $\\\\mathregular{F_{N}}$')
+    """
+    known = QUANTITIES.get(name)
+    if known is None:
+        return "1", figure_text(spoken_name(name))
+    return known.unit, f"{spoken_name(name)} {figure_text(known.symbol)}"

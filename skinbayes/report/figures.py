@@ -8,12 +8,10 @@ from base64 import b64encode
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from skinbayes.plot import plot_corner, plot_predictive, plot_prior_posterior, plot_profile, plot_trace
 from skinbayes.plot.style import look
+from skinbayes.report.drawings import Drawing, drawings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.figure import Figure
 
     from skinbayes.fit import Fit
@@ -56,60 +54,21 @@ class Picture:
 
 
 def pictures(fit: Fit) -> dict[str, Picture]:
-    """All figures of a page by key."""
-    made = [
-        _picture(
-            "predictive", plot_predictive, fit, "Data against the fitted model",
-            "Observed values with the ranges that the fitted model predicts for each row of data.",
-            "Dots are the measured values. The bars are what the fitted model would give if the experiment were repeated, "
-            "scatter included: dark for the middle half, light for 90 %. A model that fits has about nine dots in ten on its "
-            "bars.",
-        ),
-        _picture(
-            "prior-posterior", plot_prior_posterior, fit, "Prior against posterior",
-            "Density of each parameter before and after the data.",
-            "Dashed grey is what was assumed before the data, blue what is known after them. Where both agree the data said "
-            "nothing, and the panel says 'not updated'.",
-        ),
-        _picture(
-            "corner", plot_corner, fit, "Parameters and pairs",
-            "Posterior density of each parameter and of each pair of parameters.",
-            "Diagonal: each parameter with its median and 90 % interval. Below it: pairs; the inner contour holds half of the "
-            "probability, the outer one 90 %. A thin slanted ridge means that only a combination of the two is known.",
-        ),
-        _picture(
-            "trace", plot_trace, fit, "Draws against time",
-            "Draws of each parameter in the order in which they were made, one independent ensemble beside the other.",
-            "A check of the sampler: all ensembles should fill the same band from beginning to end, without drift or steps. "
-            "Dashed lines: 5 %, 50 % and 95 % of all draws.",
-        ),
-    ]  # fmt: skip
-    if fit.problem is not None and fit.problem.forward.profiles:
-        made.append(
-            _picture(
-                "profile", plot_profile, fit, fit.problem.forward.profiles[0].title,
-                "Curves of the forward model with their posterior bands.",
-                "Zooming in from left to right, ever finer roughness is resolved and less of the nominal area turns out to "
-                "touch. Friction is made in what is left at the right edge. Lines are posterior medians, bands hold 90 % of "
-                "the probability.",
-            )
-        )  # fmt: skip
-    return {picture.key: picture for picture in made}
+    """All figures of a page by key, in its order."""
+    return {drawing.key: _picture(fit, drawing) for drawing in drawings(fit)}
 
 
-def _picture(
-    key: str, draw: Callable[[Fit], Figure], fit: Fit, heading: str, alternative: str, caption: str
-) -> Picture:
-    figure = draw(fit)
+def _picture(fit: Fit, drawing: Drawing) -> Picture:
+    figure, alternative = drawing.draw(fit), drawing.alternative
     width, height = (float(size) for size in figure.get_size_inches())
     large = width > LARGE
     if not fit.converged:
         alternative = f"NOT CONVERGED. {alternative}"
     return Picture(
-        key=key,
-        heading=heading,
+        key=drawing.key,
+        heading=drawing.heading,
         alternative=alternative,
-        caption=caption,
+        caption=drawing.caption,
         kind="image/png" if large else "image/svg+xml",
         data=b64encode(_pixels(figure, width) if large else _vectors(figure)).decode("ascii"),
         width=int(width * PAGE_DENSITY),

@@ -11,15 +11,19 @@ from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report import quality, sentences, tables
 from skinbayes.report.figures import pictures
+from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.markup import links, symbols
+from skinbayes.report.ridges import ridge_sentences
+from skinbayes.report.validity import validity_sentences
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
+    from skinbayes.comparison import Yardsticks
     from skinbayes.fit import Fit
     from skinbayes.problem.check import CheckReport
 
 
-def write_report(fit: Fit, path: Path) -> Path:
+def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> Path:
     """Write one self-contained HTML page about a fit.
 
     Figures are inside the page; nothing is loaded from anywhere and no script runs. Everything that comes from data
@@ -29,6 +33,7 @@ def write_report(fit: Fit, path: Path) -> Path:
     ----------
     fit : any fit; without its problem the page has neither the curves of the model nor the check of what data can tell
     path : the file to write
+    yardsticks : the fit beside its yardsticks, from :func:`skinbayes.comparison.against_yardsticks`, if there are any
 
     Returns
     -------
@@ -41,7 +46,7 @@ def write_report(fit: Fit, path: Path) -> Path:
         The folder does not exist or cannot be written.
     """
     path = Path(path)
-    page = render(fit)
+    page = render(fit, yardsticks)
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         temporary.write_text(page, encoding="utf-8")
@@ -53,7 +58,7 @@ def write_report(fit: Fit, path: Path) -> Path:
     return path
 
 
-def render(fit: Fit) -> str:
+def render(fit: Fit, yardsticks: Yardsticks | None = None) -> str:
     """The page as text."""
     import jinja2
 
@@ -70,14 +75,15 @@ def render(fit: Fit) -> str:
         "symbols": lambda text: safe(symbols(text)),
         "links": lambda text: safe(links(text)),
     }
-    return environment.get_template("page.html").render(context(fit))
+    return environment.get_template("page.html").render(context(fit, yardsticks))
 
 
-def context(fit: Fit) -> dict[str, Any]:
+def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
     """Everything the template shows, as text."""
     check = None if fit.problem is None else fit.problem.check()
     together, everything = _combinations(fit, check)
     shown, folded = tables.derived_rows(fit)
+    drawn, groups = pictures(fit), group_sentences(fit)
     return {
         "title": str(fit.provenance["title"]) or fit.name,
         "name": fit.name,
@@ -88,13 +94,21 @@ def context(fit: Fit) -> dict[str, Any]:
         "learnt": sentences.learnt(fit),
         "products": sentences.learnt_products(fit),
         "not_learnt": sentences.not_learnt(fit),
-        "ridges": sentences.posterior_ridges(fit),
+        "ridges": ridge_sentences(fit),
+        "disagreements": sentences.disagreements(fit),
         "combinations": together,
         "check": everything,
         "parameters": tables.parameter_rows(fit),
         "derived": shown,
         "derived_folded": folded,
-        "pictures": pictures(fit),
+        "pictures": drawn,
+        "figures": [key for key in drawn if not (groups and key == "effects")],
+        "groups": groups,
+        "effects": effect_rows(fit),
+        "validity": validity_sentences(fit),
+        "loses": [] if yardsticks is None else [s for s in yardsticks.sentences() if " LOSES " in s],
+        "yardsticks": yardsticks
+        and {"sentences": yardsticks.sentences(), "headers": yardsticks.headers(), "rows": yardsticks.rows()},
         "agreement": quality.agreement(fit),
         "convergence": [sentences.with_symbols(fit, sentence) for sentence in quality.convergence(fit)],
         "assumptions": _assumptions(fit, check),
@@ -135,8 +149,8 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
     data, free = len(observed_values(fit)), len(fit.names)
     families = {str(family).replace("_", " ") for family in fit.provenance["noise"].values()}
     said = [f"Scatter of the data about the model: {' or '.join(sorted(families))} distribution."]
-    if accuracy := fit.provenance.get("accuracy"):
-        said.append(str(accuracy))
+    if accuracy := str(fit.provenance.get("accuracy") or ""):
+        said.append(f"{accuracy[:1].upper()}{accuracy[1:]}".removesuffix(".") + ".")
     if free > data:
         said.append(
             f"There are more free parameters ({free}) than data ({data}): the priors decide what remains open."

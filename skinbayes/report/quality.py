@@ -15,6 +15,8 @@ from skinbayes.plot.predictive import (
     predictive_draws,
     predictive_quantiles,
 )
+from skinbayes.plot.rows import group_columns
+from skinbayes.report.words import and_list, plural
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -62,7 +64,13 @@ def agreement(fit: Fit) -> list[str]:
             _statistic("mean", draws.mean(axis=1), float(observed.mean())),
             _statistic("scatter between rows", draws.std(axis=1, ddof=1), float(observed.std(ddof=1))),
         ]
-    elif count < FEW:
+    if group_columns(fit):
+        many = and_list([plural(column) for column in group_columns(fit)])
+        said.append(
+            f"These predictions know the effects of the very {many} that were measured: they say little about the theory, "
+            "which is judged by the size of the effects and by what is predicted for others."
+        )
+    if count < FEW:
         said.append(
             f"With {count} {'datum' if count == 1 else 'data'} such agreement is weak evidence: almost any model with as "
             "many parameters would show it."

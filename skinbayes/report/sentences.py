@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.diagnose import ridges
-from skinbayes.plot.numbers import interval, number, quantity
+from skinbayes.plot.numbers import interval, number, percent, quantity
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
 from skinbayes.vocabulary import QUANTITIES
@@ -18,8 +17,8 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 
-PLAIN = 0.05
-"""An exponent so close to one is written as one."""
+STRAINED = 0.05
+"""A posterior median in this tail of the prior is said to pull against it."""
 
 
 def title_name(fit: Fit, label: str) -> str:
@@ -109,6 +108,28 @@ def _strength(update: PriorUpdate) -> str:
     return "The data narrow it a little; most of this is still the prior."
 
 
+def disagreements(fit: Fit) -> list[str]:
+    """One entry for each parameter whose posterior median lies beyond the 5–95 % range of its prior."""
+    said = []
+    for update in fit_updates(fit).values():
+        tail = min(update.prior_quantile, 1.0 - update.prior_quantile)
+        if tail >= STRAINED and update.verdict != "contradicted":
+            continue
+        side = "below" if update.prior_quantile < 0.5 else "above"
+        low, high = np.quantile(fit.draws(update.name, "prior"), [0.05, 0.95])
+        said.append(
+            f"{title_name(fit, update.name)}: half of the posterior lies {side} "
+            f"{quantity(float(np.median(fit.draws(update.name))), fit.unit(update.name))}, but only {percent(tail)} of the prior "
+            f"(90 % of it between {interval(low, high, fit.unit(update.name), joint=' and ')}). "
+            + (
+                "The data contradict the prior: question the prior, the model or the data before using the number."
+                if update.verdict == "contradicted"
+                else "Prior and data pull against each other."
+            )
+        )
+    return said
+
+
 def _contradiction(update: PriorUpdate) -> str:
     side = "below" if update.prior_quantile < 0.5 else "above"
     return (
@@ -124,27 +145,3 @@ def not_learnt(fit: Fit) -> list[str]:
         for update in fit_updates(fit).values()
         if update.verdict == "not updated"
     ]
-
-
-def posterior_ridges(fit: Fit) -> list[str]:
-    """Pairs of parameters that are known together much better than apart."""
-    said = []
-    for ridge in ridges(fit.names, fit.theta()):
-        first, second = fit.symbol(ridge.first), fit.symbol(ridge.second)
-        start = (
-            f"{first} and {second} are known together better than apart (correlation {ridge.correlation:.2f})"
-        )
-        if not ridge.logarithmic:
-            said.append(f"{start}.")
-            continue
-        power = 1.0 if abs(abs(ridge.exponent) - 1.0) < PLAIN else abs(ridge.exponent)
-        raised = first if power == 1.0 else f"{first}^{number(power, 2)}"
-        sign = 1.0 if ridge.exponent > 0.0 else -1.0
-        together = f"{second} / {raised}" if sign > 0.0 else f"{second} · {raised}"
-        logarithm = np.log(fit.draws(ridge.second)) - sign * power * np.log(fit.draws(ridge.first))
-        low, high = np.quantile(logarithm, [0.05, 0.95])
-        said.append(
-            f"{start}: {together} is known within a factor of {number(float(np.exp(high - low)), 2)}, "
-            "from end to end of its 90 % interval."
-        )
-    return said

@@ -109,7 +109,7 @@ def test_figures_have_alternative_texts_and_captions() -> None:
     assert len(images) == len(page.all("figure")) == len(page.all("figcaption")) == 5
     assert all(len(image["alt"]) > 30 for image in images)
     assert {f["id"] for f in page.all("figure")} == {
-        "predictive", "profile", "prior-posterior", "corner", "trace",
+        "predictive", "profile-wavevector", "prior-posterior", "corner", "trace",
     }  # fmt: skip
 
 
@@ -223,7 +223,7 @@ def test_page_of_a_run_directory_and_of_a_bare_file_agree(tmp_path: Path) -> Non
         for i, source in enumerate((tmp_path / "run", moved))
     ]
     assert words(pages[0].text) == words(pages[1].text)
-    assert len(pages[1].all("img")) == 5
+    assert len(pages[1].all("img")) == 6  # eleven rows are enough for residuals against the load
 
 
 def test_page_of_a_fit_whose_model_is_gone(tmp_path: Path) -> None:
@@ -242,12 +242,12 @@ def test_page_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest
         patch.setattr(
             Path, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device"))
         )
-        patch.setattr("skinbayes.report.page.render", lambda _: "new")
+        patch.setattr("skinbayes.report.page.render", lambda *_: "new")
         with pytest.raises(InputError, match=r"page\.html: cannot be written"):
             write_report(short_fit(), target)
     assert target.read_text(encoding="utf-8") == "as it was"
     assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
-    monkeypatch.setattr("skinbayes.report.page.render", lambda _: "new")
+    monkeypatch.setattr("skinbayes.report.page.render", lambda *_: "new")
     assert write_report(short_fit(), target) == target
     assert target.read_text(encoding="utf-8") == "new"
     with pytest.raises(InputError, match="cannot be written"):

@@ -13,6 +13,7 @@ from skinbayes.fit import Fit
 from skinbayes.plot.numbers import interval, percent, quantity
 from skinbayes.report import quality, sentences
 from skinbayes.report.markup import links, symbols
+from skinbayes.report.ridges import ridge_sentences
 
 
 def with_draws(fit: Fit, name: str, values: np.ndarray) -> Fit:
@@ -53,13 +54,13 @@ def test_ridge_is_found_with_its_exponent() -> None:
     stress = fit.draws("frictional_shear_stress")
     noise = np.exp(0.01 * np.random.default_rng(0).normal(size=stress.size))
     tied = with_draws(fit, "young_modulus_layer", 1e-8 * stress**2 * noise)
-    (line,) = sentences.posterior_ridges(tied)
+    (line,) = ridge_sentences(tied)
     assert "E0 / σ_f^2" in line
     # 90 % of a lognormal of width 0.01: exp(2·1.645·0.01) = 1.033
     assert "factor of 1.0," in line
     inverse = with_draws(fit, "young_modulus_layer", 1e14 / stress * noise)
-    assert "E0 · σ_f is known" in sentences.posterior_ridges(inverse)[0]
-    assert sentences.posterior_ridges(fit) == []
+    assert "E0 · σ_f is known" in ridge_sentences(inverse)[0]
+    assert ridge_sentences(fit) == []
 
 
 def test_names_become_symbols_but_only_whole_ones() -> None:

@@ -1,0 +1,111 @@
+"""Curves of the forward model over the posterior: which rows share one, and its quantiles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.plot.numbers import quantity
+from skinbayes.plot.predictive import LEVELS, row_names
+from skinbayes.vocabulary import QUANTITIES
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+    from skinbayes.forward import Profile
+    from skinbayes.problem import Problem
+
+DRAWS = 200
+"""Posterior draws that a band is made of."""
+
+MOST_CURVES = 4
+
+SAME = 1e-3
+"""Rows whose curves agree within this relative difference share one curve."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """One curve.
+
+    Attributes
+    ----------
+    label : whose curve it is
+    rows : the rows that share it
+    abscissa : shape ``(K,)``, SI
+    quantiles : 5, 25, 50, 75 and 95 % quantiles of the ordinate, shape ``(5, K)``, SI
+    """
+
+    label: str
+    rows: list[int]
+    abscissa: FloatArray
+    quantiles: FloatArray
+
+
+def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
+    """The curves of one profile, at most four, each for a group of rows that share it."""
+    theta = fit.theta()
+    middle = np.median(theta, axis=0, keepdims=True)
+    theta = theta[:: max(1, len(theta) // DRAWS)]
+    groups = _groups(problem, profile, middle)
+    shared = len(groups) == 1
+    names, bands = row_names(fit), []
+    for position, rows in groups:
+        abscissa, curves = problem.profile(profile, theta, rows[0])
+        # where the theory gives no value for some of the draws, the others make the band
+        known = np.isfinite(curves).any(axis=0)
+        quantiles = np.full((len(LEVELS), len(abscissa)), np.nan)
+        quantiles[:, known] = np.nanquantile(curves[:, known], LEVELS, axis=0)
+        label = position + _row_text(names, rows, shared) + _load(problem, middle, rows)
+        bands.append(Band(label, rows, abscissa, quantiles))
+    return bands
+
+
+def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tuple[str, list[int]]]:
+    """Rows that share a curve at the posterior median, and a word for each group."""
+    groups: list[tuple[FloatArray, list[int]]] = []
+    alike: dict[tuple[float, ...], list[int]] = {}
+    wanted = problem.forward.input_names()
+    differing = [
+        values[0]
+        for name, values in problem.inputs(middle).items()
+        if values.shape[-1] > 1 and name != profile.abscissa and name in wanted
+    ]
+    for row in range(problem.conditions.n_rows):
+        same = alike.setdefault(tuple(float(values[row]) for values in differing), [])
+        same.append(row)
+    # rows of the same inputs share a curve without it being computed again, and others may still do
+    for alike_rows in alike.values():
+        grid, curve = problem.profile(profile, middle, alike_rows[0])
+        both = np.concatenate([grid, curve[0]])
+        for known, rows in groups:
+            if np.allclose(known, both, rtol=SAME, atol=0.0, equal_nan=True):
+                rows[:] = sorted([*rows, *alike_rows])
+                break
+        else:
+            groups.append((both, list(alike_rows)))
+    if len(groups) <= MOST_CURVES:
+        return [("", rows) for _, rows in groups]
+    groups.sort(key=lambda group: float(group[0][np.isfinite(group[0])][-1]))
+    chosen = (("lowest: ", groups[0]), ("middle: ", groups[len(groups) // 2]), ("highest: ", groups[-1]))
+    return [(word, rows) for word, (_, rows) in chosen]
+
+
+def _row_text(names: list[str], rows: list[int], shared: bool) -> str:
+    if shared:
+        return "all rows" if len(names) > 1 else names[0]
+    found = [names[row] for row in rows]
+    return ", ".join(found) if len(found) <= 3 else f"{found[0]} and {len(found) - 1} more"
+
+
+def _load(problem: Problem, middle: FloatArray, rows: list[int]) -> str:
+    """What presses the skin in these rows, in brackets: the nominal pressure, or the force."""
+    count = problem.conditions.n_rows
+    known = {**problem.inputs(middle), **problem.derived(middle)}
+    for name in ("nominal_pressure", "normal_force"):
+        if name in known:
+            value = float(known[name][0, rows[0] if known[name].shape[-1] == count else 0])
+            return f" ({QUANTITIES[name].symbol} = {quantity(value, QUANTITIES[name].unit, 2)})"
+    return ""

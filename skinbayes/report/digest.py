@@ -1,0 +1,46 @@
+"""What a page says, for machines: validity, groups, ridges and priors of a fit as plain types."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from skinbayes.plot.predictive import row_names
+from skinbayes.plot.updates import fit_updates
+from skinbayes.report.groups import group_findings
+from skinbayes.report.ridges import posterior_ridges
+from skinbayes.report.validity import flags
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+
+
+def digest(fit: Fit) -> dict[str, Any]:
+    """The findings about a fit as plain types.
+
+    Parameters
+    ----------
+    fit : any fit
+
+    Returns
+    -------
+    dict
+        ``validity`` (flag to the number of rows flagged in at least 5 % of the draws, the share of all predictions, what it
+        means, and the share of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of each
+        effect, the scale over the noise, the share of the variance), ``ridges`` (pairs of parameters, exponent, the combination
+        that is known and how well) and ``priors`` (parameter to its update by the data). Quantities in SI.
+    """
+    names = row_names(fit)
+    return {
+        "validity": {flag.name: flag.to_dict(names) for flag in flags(fit)},
+        "groups": {finding.column: finding.to_dict() for finding in group_findings(fit)},
+        "ridges": [asdict(ridge) for ridge in posterior_ridges(fit)],
+        "priors": {
+            label: {
+                "verdict": update.verdict,
+                "contraction": update.contraction,
+                "prior_quantile": update.prior_quantile,
+            }
+            for label, update in fit_updates(fit).items()
+        },
+    }

@@ -1,0 +1,187 @@
+"""Which figures a page has, with the texts that say how to read them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.plot import (
+    plot_corner,
+    plot_effects,
+    plot_levels,
+    plot_predictive,
+    plot_prior_posterior,
+    plot_profile,
+    plot_residuals,
+    plot_trace,
+)
+from skinbayes.plot.predictive import observables
+from skinbayes.plot.profile import profile_abscissas
+from skinbayes.plot.rows import group_columns, row_abscissa, row_predictions, telling_columns
+from skinbayes.plot.symbols import spoken_name
+from skinbayes.report.words import plural
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from skinbayes.fit import Fit
+    from skinbayes.problem import Problem
+
+FEWEST_ROWS = 8
+"""With fewer rows there are no figures of residuals."""
+
+CURVES = {
+    "wavevector": (
+        "Contact area against magnification",
+        "Zooming in from left to right, ever finer roughness is resolved and less of the nominal area turns out to touch. "
+        "Friction is made in what is left at the right edge.",
+    ),
+    "time": (
+        "Film, contact area and friction in time",
+        "One experiment from top to bottom: the water film dries, bridges of water pull the skin into contact before it is gone, "
+        "and friction follows the contact area.",
+    ),
+    "film_thickness": (
+        "The skin against the water film",
+        "Drying runs from right to left: a thick film floods the skin, a thinner one pulls it together.",
+    ),
+    "speed_viscosity_product": (
+        "Stribeck curve",
+        "From left to right the liquid carries more of the load: friction falls as contact is lost, and rises again by the shear "
+        "of the liquid.",
+    ),
+}
+"""Heading of curves and a sentence on how to read them, by their abscissa."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure to be drawn.
+
+    Attributes
+    ----------
+    key : identifier on the page
+    draw : makes the figure of a fit
+    heading, alternative, caption : texts
+    """
+
+    key: str
+    draw: Callable[[Fit], Figure]
+    heading: str
+    alternative: str
+    caption: str
+
+
+def drawings(fit: Fit) -> list[Drawing]:
+    """All figures of a page, in its order: data first, the sampler last."""
+    problem = fit.problem
+    return [
+        _predictive(fit),
+        *(
+            []
+            if problem is None
+            else [*_by_level(fit, problem), *_curves(problem), *_residuals(fit, problem)]
+        ),
+        *_sampled(),
+    ]
+
+
+def _predictive(fit: Fit) -> Drawing:
+    names = [spoken_name(name) for name in observables(fit)]
+    panels = "" if len(names) == 1 else f" One panel for each of what was measured: {', '.join(names)}."
+    return Drawing(
+        "predictive", plot_predictive, "Data against the fitted model",
+        "Observed values with the ranges that the fitted model predicts for each row of data.",
+        "Dots are the measured values. The bars are what the fitted model would give if the experiment were repeated, "
+        "scatter included: dark for the middle half, light for 90 %. A model that fits has about nine dots in ten on its "
+        f"bars.{panels}",
+    )  # fmt: skip
+
+
+def _sampled() -> list[Drawing]:
+    return [
+        Drawing(
+            "prior-posterior", plot_prior_posterior, "Prior against posterior",
+            "Density of each parameter before and after the data.",
+            "Dashed grey is what was assumed before the data, blue what is known after them. Where both agree the data said "
+            "nothing, and the panel says 'not updated'.",
+        ),
+        Drawing(
+            "corner", plot_corner, "Parameters and pairs",
+            "Posterior density of each parameter and of each pair of parameters.",
+            "Diagonal: each parameter with its median and 90 % interval. Below it: pairs; the inner contour holds half of the "
+            "probability, the outer one 90 %. A thin slanted ridge means that only a combination of the two is known.",
+        ),
+        Drawing(
+            "trace", plot_trace, "Draws against time",
+            "Draws of each parameter in the order in which they were made, one independent ensemble beside the other.",
+            "A check of the sampler: all ensembles should fill the same band from beginning to end, without drift or steps. "
+            "Dashed lines: 5 %, 50 % and 95 % of all draws.",
+        ),
+    ]  # fmt: skip
+
+
+def _curves(problem: Problem) -> Iterator[Drawing]:
+    """Curves of the forward model, a figure for each abscissa."""
+    for abscissa in profile_abscissas(problem):
+        heading, reading = CURVES.get(abscissa, (f"Curves against {spoken_name(abscissa)}", ""))
+        yield Drawing(
+            f"profile-{abscissa}".replace("_", "-"), partial(plot_profile, abscissa=abscissa), heading,
+            "Curves of the forward model with their posterior bands, and the data that lie on them.",
+            f"{reading} Lines are posterior medians, bands hold 90 % of the probability (a darker one half). Scatter is not "
+            "in them, so that dots may lie outside.".strip(),
+        )  # fmt: skip
+
+
+def _by_level(fit: Fit, problem: Problem) -> Iterator[Drawing]:
+    """Data and model by person, liquid and other groups."""
+    if not _has_residuals(fit, problem) or len(observables(fit)) > 1:
+        return
+    effects, predictions = group_columns(fit), row_predictions(fit, problem)
+    for column in telling_columns(fit):
+        one = spoken_name(column)
+        own = f" and the effect of this {one}, written above it," if column in effects else ""
+        yield Drawing(
+            f"by-{column}".replace("_", "-"), partial(plot_levels, column=column, predictions=predictions),
+            f"Data and model, {one} by {one}",
+            f"Small panels, one for each {one}, with measured points over the range of the fitted model.",
+            f"Each panel shows one {one}: dots are measured, grey dots are all other {plural(column)}. Blue is what the fitted "
+            f"model says for the conditions of these rows{own} without scatter: the line is the median, dark holds half, light "
+            "90 % of the probability. It has corners where conditions change from row to row. A thin line is the curve for "
+            "typical conditions, the same in all panels.",
+        )  # fmt: skip
+    if telling_columns(fit):
+        bars = (
+            ", which the bar beside them shows (dark: half, light: 90 % of the probability)."
+            if effects
+            else "."
+        )
+        yield Drawing(
+            "effects", partial(plot_effects, predictions=predictions),
+            "Effects of groups and residuals" if effects else "Residuals by group",
+            "For each level of each grouping column, its effect with its range, and observed over predicted for its rows.",
+            f"Dots are rows: what was observed over what the model predicts without the effect in question{bars} "
+            "A level whose dots lie to one side is one that the model does not explain.",
+        )  # fmt: skip
+
+
+def _residuals(fit: Fit, problem: Problem) -> Iterator[Drawing]:
+    """Residuals against the conditions."""
+    if not _has_residuals(fit, problem):
+        return
+    known = ", effects of groups taken off" if group_columns(fit) else ""
+    yield Drawing(
+        "residuals", partial(plot_residuals, predictions=row_predictions(fit, problem)),
+        "What is left between data and model", "Observed over predicted for each row against the conditions.",
+        f"Dots are rows: observed over predicted{known}. Bars, where there are any, are medians of a sixth of the rows. Where "
+        "the model is right, dots lie evenly about the dashed line; a slope or a bend is something it misses.",
+    )  # fmt: skip
+
+
+def _has_residuals(fit: Fit, problem: Problem) -> bool:
+    middle = np.median(fit.theta(), axis=0)
+    return problem.conditions.n_rows >= FEWEST_ROWS and row_abscissa(problem, middle) is not None

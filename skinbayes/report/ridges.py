@@ -1,0 +1,91 @@
+"""Pairs of parameters that the posterior knows together much better than apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.diagnose import ridges
+from skinbayes.plot.numbers import number
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+
+PLAIN = 0.05
+"""An exponent so close to one is written as one."""
+
+
+@dataclass(frozen=True)
+class PosteriorRidge:
+    """Two parameters on a ridge.
+
+    Attributes
+    ----------
+    first, second : labels of the parameters
+    correlation : of their logarithms, or of themselves where one is not positive
+    exponent : k of second ∝ first^k along the ridge; None where one is not positive
+    combination : what is known, in symbols; empty where one is not positive
+    factor : upper over lower end of the 90 % interval of the combination
+    factors_alone : the same for each of the two
+    """
+
+    first: str
+    second: str
+    correlation: float
+    exponent: float | None
+    combination: str
+    factor: float | None
+    factors_alone: tuple[float, float] | None
+
+
+def posterior_ridges(fit: Fit) -> list[PosteriorRidge]:
+    """The ridges of a fit, strongest first."""
+    found = []
+    for ridge in ridges(fit.names, fit.theta()):
+        if not ridge.logarithmic:
+            found.append(PosteriorRidge(ridge.first, ridge.second, ridge.correlation, None, "", None, None))
+            continue
+        power = 1.0 if abs(abs(ridge.exponent) - 1.0) < PLAIN else abs(ridge.exponent)
+        sign = 1.0 if ridge.exponent > 0.0 else -1.0
+        symbol = fit.symbol(ridge.first)
+        raised = symbol if power == 1.0 else f"{symbol}^{number(power, 2)}"
+        logs = [np.log(fit.draws(label)) for label in (ridge.first, ridge.second)]
+        found.append(
+            PosteriorRidge(
+                ridge.first,
+                ridge.second,
+                ridge.correlation,
+                sign * power,
+                f"{fit.symbol(ridge.second)} {'/' if sign > 0.0 else '·'} {raised}",
+                _factor(logs[1] - sign * power * logs[0]),
+                (_factor(logs[0]), _factor(logs[1])),
+            )
+        )
+    return found
+
+
+def ridge_sentences(fit: Fit) -> list[str]:
+    """Which parameters form ridges, the combination that is known and how much better than each alone."""
+    said = []
+    for ridge in posterior_ridges(fit):
+        first, second = fit.symbol(ridge.first), fit.symbol(ridge.second)
+        start = (
+            f"{first} and {second} are known together better than apart (correlation {ridge.correlation:.2f})"
+        )
+        if ridge.factor is None or ridge.factors_alone is None:
+            said.append(f"{start}.")
+            continue
+        one, two = (number(factor, 2) for factor in ridge.factors_alone)
+        said.append(
+            f"{start}: {ridge.combination} is known within a factor of {number(ridge.factor, 2)}, from end to end of its 90 % "
+            f"interval; alone, {first} is known only within a factor of {one} and {second} within {two}."
+        )
+    return said
+
+
+def _factor(logarithm: FloatArray) -> float:
+    low, high = np.quantile(logarithm, [0.05, 0.95])
+    return float(np.exp(high - low))
