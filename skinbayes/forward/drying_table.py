@@ -70,7 +70,7 @@ def table_over(
 
 
 def prepared_drying(
-    ranges: Ranges, tables: Tables, progress: Progress | None, model: ForwardModel
+    ranges: Ranges, tables: Tables, progress: Progress | None, cores: int, model: ForwardModel
 ) -> ForwardModel:
     """Return a model of drying skin whose evaluation takes a ``table`` with the table for ``ranges``, if there is one."""
     table = table_over(ranges, dict(model.optional), tables, progress)
