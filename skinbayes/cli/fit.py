@@ -71,13 +71,16 @@ def fit(
     as_json: bool,
 ) -> int:
     """Sample the posterior until autocorrelation, effective sample size and R-hat agree that it is enough."""
-    from skinbayes.cli.progress import sampling_progress
+    from skinbayes.cli.progress import counted_progress, sampling_progress
     from skinbayes.fit import sample
     from skinbayes.problem import load_problem
 
     problem = load_problem(model, data=data)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     try:
+        if problem.observations:
+            with counted_progress("building the table") as count:
+                problem.prepare(count, cores)
         with sampling_progress(ess) as progress:
             result = sample(
                 problem, seed=seed, ess=ess, cores=cores, directory=directory, resume=resume, progress=progress,
@@ -91,9 +94,10 @@ def fit(
         return EXIT_INTERRUPTED
     page = None
     if with_report:
-        from skinbayes.report import write_report
+        from skinbayes.cli.page import write_page
 
-        page = write_report(result, directory / "report.html")
+        page = directory / "report.html"
+        write_page(result, page, directory)
     status = EXIT_DONE if result.converged else EXIT_NOT_CONVERGED
     if as_json:
         print_json(_document(result, directory, page))
@@ -103,6 +107,8 @@ def fit(
 
 
 def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]:
+    from skinbayes.report import digest
+
     sampling = result.provenance["sampling"]
     summary = result.summary()
     columns = ["unit", "median", "q05", "q95", "ess_bulk", "ess_tail", "r_hat"]
@@ -118,6 +124,7 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
         "steps": sampling["steps"],
         "seconds": result.provenance["seconds"]["total"],
         "report": page and str(page),
+        **digest(result),
     }
 
 

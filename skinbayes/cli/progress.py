@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 import click
@@ -19,18 +19,22 @@ QUIET_SECONDS = 15.0
 """Without a terminal one line is written each time this much time has passed."""
 
 
+YARDSTICK_ESS = 2000.0
+"""Effective sample size that yardsticks are sampled to, the default of ``sample``."""
+
+
 @contextmanager
-def sampling_progress(ess: float) -> Iterator[Callable[[Progress], None]]:
+def sampling_progress(ess: float, what: str = "sampling") -> Iterator[Callable[[Progress], None]]:
     """Yield what to call after every block of steps; shows steps and effective sample size reached of ``ess``."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
-        yield _lines(ess)
+        yield _lines(ess, what)
         return
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
     bar = Bar(
-        TextColumn("sampling"),
+        TextColumn(what),
         BarColumn(),
         TextColumn("{task.description}"),
         TimeElapsedColumn(),
@@ -55,7 +59,7 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield what to call with the number done and their total; nothing is shown before the first call."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
-        yield lambda done, total: click.echo(f"{what}: {done} of {total}", err=True)
+        yield _counted_lines(what)
         return
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
@@ -73,7 +77,35 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
         yield lambda done, total: bar.update(task, completed=done, total=total, visible=True)
 
 
-def _lines(ess: float) -> Callable[[Progress], None]:
+@contextmanager
+def yardstick_progress() -> Iterator[Callable[[str, Progress], None]]:
+    """Yield what to call with the name of a yardstick after every block of its steps."""
+    with ExitStack() as shown:
+        current: dict[str, Callable[[Progress], None]] = {}
+
+        def update(name: str, progress: Progress) -> None:
+            if name not in current:
+                # the bar of the yardstick before makes way
+                shown.close()
+                current[name] = shown.enter_context(sampling_progress(YARDSTICK_ESS, f"yardstick {name}"))
+            current[name](progress)
+
+        yield update
+
+
+def _counted_lines(what: str) -> Callable[[int, int], None]:
+    last = time.monotonic()
+
+    def update(done: int, total: int) -> None:
+        nonlocal last
+        if time.monotonic() - last >= QUIET_SECONDS:
+            last = time.monotonic()
+            click.echo(f"{what}: {done} of {total}", err=True)
+
+    return update
+
+
+def _lines(ess: float, what: str) -> Callable[[Progress], None]:
     last = time.monotonic()
 
     def update(progress: Progress) -> None:
@@ -82,7 +114,7 @@ def _lines(ess: float) -> Callable[[Progress], None]:
             last = time.monotonic()
             reached = _reached(progress)
             size = "" if reached is None else f", effective sample size {reached:.0f} of {ess:.0f}"
-            click.echo(f"sampling: {progress.steps} steps{size}", err=True)
+            click.echo(f"{what}: {progress.steps} steps{size}", err=True)
 
     return update
 
