@@ -50,7 +50,10 @@ def test_its_names_are_words_of_the_vocabulary(name: str) -> None:
     content = raw(name)
     assert set(content["parameters"]) <= set(QUANTITIES)
     assert set(content.get("conditions", {})) <= set(QUANTITIES)
-    assert set(content.get("noise", {})) <= {"family", *NOISE_PARAMETERS}
+    noise, several = content.get("noise", {}), content.get("data", {}).get("observables")
+    assert several is None or set(noise) == set(several)
+    for block in noise.values() if several else [noise]:
+        assert set(block) <= {"family", *NOISE_PARAMETERS}
     for entry in content["parameters"].values():
         assert not isinstance(entry, dict) or entry.get("by", "state") in LABELS
     derived = {n for model in forward_models().values() for n in model.derived_names}
