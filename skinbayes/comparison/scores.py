@@ -186,7 +186,10 @@ def _refitted(fit: Fit, column: str, entry: LeftOutLevel) -> LeftOutLevel:
             f"'{fit.name}' cannot be sampled without {column} '{entry.level}': its model or its data are not at hand"
         )
     seed = int(fit.provenance["sampling"]["seed"])
-    found = predict_left_out(fit.problem, column, entry.level, seed)
+    densities = fit.groups[_LEFT_OUT][column]
+    place = [str(level) for level in densities[f"{column}_level"].values].index(entry.level)
+    whole = densities.values[..., place].reshape(-1)
+    found = predict_left_out(fit.problem, column, entry.level, whole, seed)
     reliable = bool(found.converged and found.error <= LARGEST_REFIT_ERROR)
     return LeftOutLevel(entry.level, entry.rows, found.log_density, entry.pareto_k, True, reliable)
 

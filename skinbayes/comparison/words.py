@@ -39,10 +39,12 @@ def plural(column: str) -> str:
 
 def pointwise_question(grouped_by: Sequence[str]) -> str:
     """What leaving out single data answers if groups have effects."""
-    known = " and ".join(f"the effect of its {singular(column)}" for column in grouped_by)
+    known = " and ".join(f"its {singular(column)}" for column in grouped_by)
+    effects = "the effect" if len(grouped_by) == 1 else "the effects"
     return (
-        f"Leaving out one datum at a time asks how well one more measurement is predicted when {known} is known from other rows. "
-        "Such effects make up for what a theory misses, so these numbers can hardly tell physics apart."
+        f"Leaving out one datum at a time asks how well one more measurement is predicted, {effects} of {known} being known from "
+        "other rows. Such effects make up for whatever a theory misses of a whole group, so this number cannot tell which "
+        "physics is right about the groups; it judges how rows differ inside them."
     )
 
 

@@ -7,15 +7,17 @@ from math import log
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.optimize import brentq
+from scipy.special import expit
 
+from skinbayes.arrays import FloatArray
 from skinbayes.problem.subsets import without_level
 
 if TYPE_CHECKING:
     from skinbayes.problem import Problem
 
 REFIT_ESS = 1000.0
-"""Effective sample size of a refit unless told otherwise; as importance sampling without weights needs."""
+"""Effective sample size of a refit unless told otherwise."""
 
 DRAWS_PER_CHAIN = 1000
 
@@ -40,16 +42,18 @@ class LeftOutDensity:
 
 
 def predict_left_out(
-    problem: Problem, column: str, level: str, seed: int = 1, ess: float = REFIT_ESS
+    problem: Problem, column: str, level: str, whole: FloatArray, seed: int = 1, ess: float = REFIT_ESS
 ) -> LeftOutDensity:
     """Sample the problem without one level of a grouping column, and score the data of this level.
 
-    ln p(y_L | y_−L) = ln of the mean of p(y_L | y_−L, θ) over draws θ of the posterior of y_−L.
+    ln p(y_L | y_−L) is the ratio of the evidences of all data and of those without the level, from draws of both posteriors,
+    see :func:`ratio_of_evidences`.
 
     Parameters
     ----------
     problem : a problem with data of one observable
     column, level : what to leave out
+    whole : ln p(data of the level | all other data, θ) at draws from the posterior of all data, shape ``(S,)``
     seed : non-negative integer
     ess : effective sample size wanted in every parameter
 
@@ -73,7 +77,52 @@ def predict_left_out(
             for i in range(0, len(draws), PART)
         ]
     )
-    mean = float(logsumexp(density) - log(len(density)))
-    with np.errstate(invalid="ignore"):
-        error = float(np.exp(density - mean).std() / np.sqrt(len(density)))
-    return LeftOutDensity(mean, error, chains.converged)
+    value, error = ratio_of_evidences(density, whole)
+    return LeftOutDensity(value, error, chains.converged)
+
+
+def ratio_of_evidences(without: FloatArray, whole: FloatArray) -> tuple[float, float]:
+    """ln of the ratio of two evidences from draws of both posteriors, by the best bridge between them.
+
+    Let the posterior of all data be that without some of them times exp(u), not normalised. Then for any c
+
+    ln(Z/Z_0) = c + ln ⟨σ(u − c)⟩_0 − ln ⟨σ(c − u)⟩
+
+    with the logistic function σ and means over draws without the data (0) and with them. The error is least where c is the
+    ratio itself, shifted by ln of the ratio of the numbers of draws. The mean of exp(u) over draws without the data would be
+    correct too, but a few draws decide it when the data are surprising.
+
+    Parameters
+    ----------
+    without, whole : u at independent draws of the two posteriors, shapes ``(S0,)`` and ``(S,)``
+
+    Returns
+    -------
+    ln(Z/Z_0) and its standard error; infinite if the two have no draw in common
+
+    References
+    ----------
+    Bennett, Journal of Computational Physics 22 (1976) 245, doi 10.1016/0021-9991(76)90078-4; Meng & Wong, Statistica Sinica 6
+    (1996) 831.
+
+    Examples
+    --------
+    >>> ratio, error = ratio_of_evidences(np.full(10, -2.5), np.full(30, -2.5))
+    >>> round(ratio, 6), round(error, 6)
+    (-2.5, 0.0)
+    """
+    shift = log(len(whole) / len(without))
+    both = np.concatenate([without, whole])
+    finite = both[np.isfinite(both)]
+    if not finite.size:
+        return float("-inf"), float("inf")
+
+    def imbalance(ratio: float) -> float:
+        return float(expit(without - ratio + shift).sum() - expit(ratio - shift - whole).sum())
+
+    low, high = finite.min() - abs(shift) - 40.0, finite.max() + abs(shift) + 40.0
+    ratio = float(brentq(imbalance, low, high, xtol=1e-10))
+    terms = (expit(without - ratio + shift), expit(ratio - shift - whole))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        variance = sum(float(term.var() / term.mean() ** 2 / len(term)) for term in terms)
+    return ratio, float(np.sqrt(variance)) if np.isfinite(variance) else float("inf")
