@@ -14,16 +14,30 @@ from skinbayes.cli.output import json_option, print_json
 @click.option(
     "-o", "--output", metavar="FILE.html", help="Where to write the page.  [default: RUN/report.html]"
 )
+@click.option(
+    "--no-yardsticks",
+    is_flag=True,
+    help="Do not fit the models without theory that the model names beside it.",
+)
 @json_option
-def report(run: str, output: str | None, as_json: bool) -> None:
+def report(run: str, output: str | None, no_yardsticks: bool, as_json: bool) -> None:
     """Write one self-contained HTML page: what was learnt and what was not, with figures."""
+    from skinbayes.cli.page import write_page
     from skinbayes.fit import load_fit
-    from skinbayes.report import write_report
+    from skinbayes.report import digest
 
-    fit = load_fit(run)
-    beside = Path(run) / "report.html" if Path(run).is_dir() else Path(run).with_suffix(".html")
-    written = write_report(fit, Path(output) if output else beside)
+    fit, place = load_fit(run), Path(run)
+    page = Path(output) if output else place / "report.html" if place.is_dir() else place.with_suffix(".html")
+    yardsticks = write_page(fit, page, place if place.is_dir() else None, not no_yardsticks)
     if as_json:
-        print_json({"run": run, "report": str(written), "converged": fit.converged})
+        print_json(
+            {
+                "run": run,
+                "report": str(page),
+                "converged": fit.converged,
+                **digest(fit),
+                "yardsticks": None if yardsticks is None else yardsticks.to_dict(),
+            }
+        )
     else:
-        click.echo(f"report: {written}")
+        click.echo(f"report: {page}")

@@ -30,7 +30,7 @@ LAW = (
 )
 
 
-def _abscissa(inputs: Inputs) -> FloatArray:
+def _abscissa(inputs: Inputs, tables: Tables | None = None) -> FloatArray:
     """Return ηv [N/m]: as given, or viscosity times sliding speed."""
     if "speed_viscosity_product" in inputs:
         return np.asarray(inputs["speed_viscosity_product"], dtype=float)
@@ -79,6 +79,7 @@ MODEL = ForwardModel(
     optional={"transition_load_exponent": 0.0},
     evaluate=_evaluate,
     derived=_derived,
+    abscissa=_abscissa,
     validate=_validate,
     uses_surface=False,
     profiles=(

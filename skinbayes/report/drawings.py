@@ -139,10 +139,10 @@ def _curves(problem: Problem) -> Iterator[Drawing]:
 
 def _by_level(fit: Fit, problem: Problem) -> Iterator[Drawing]:
     """Data and model by person, liquid and other groups."""
-    if not _has_residuals(fit, problem) or len(observables(fit)) > 1:
+    if problem.conditions.n_rows < FEWEST_ROWS or len(observables(fit)) > 1 or not telling_columns(fit):
         return
     effects, predictions = group_columns(fit), row_predictions(fit, problem)
-    for column in telling_columns(fit):
+    for column in telling_columns(fit) if _has_abscissa(fit, problem) else []:
         one = spoken_name(column)
         own = f" and the effect of this {one}, written above it," if column in effects else ""
         yield Drawing(
@@ -171,7 +171,7 @@ def _by_level(fit: Fit, problem: Problem) -> Iterator[Drawing]:
 
 def _residuals(fit: Fit, problem: Problem) -> Iterator[Drawing]:
     """Residuals against the conditions."""
-    if not _has_residuals(fit, problem):
+    if problem.conditions.n_rows < FEWEST_ROWS or not _has_abscissa(fit, problem):
         return
     known = ", effects of groups taken off" if group_columns(fit) else ""
     yield Drawing(
@@ -182,6 +182,5 @@ def _residuals(fit: Fit, problem: Problem) -> Iterator[Drawing]:
     )  # fmt: skip
 
 
-def _has_residuals(fit: Fit, problem: Problem) -> bool:
-    middle = np.median(fit.theta(), axis=0)
-    return problem.conditions.n_rows >= FEWEST_ROWS and row_abscissa(problem, middle) is not None
+def _has_abscissa(fit: Fit, problem: Problem) -> bool:
+    return row_abscissa(problem, np.median(fit.theta(), axis=0)) is not None

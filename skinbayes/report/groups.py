@@ -21,13 +21,17 @@ if TYPE_CHECKING:
 NOISE_DRAWS = 100
 """Posterior draws for which the width of the noise is averaged over the rows."""
 
-HEADINGS = {"person": "How people differ", "liquid": "The theory's misfit from liquid to liquid"}
+HEADINGS = {"person": "How people differ"}
 """What the effects of a grouping column are; other columns: how their levels differ."""
 
-MISFIT = {
-    "liquid": "The model knows how liquids differ, so that a theory that is right would leave nothing of this."
-}
-"""Said of effects that are no property of the groups."""
+MISFIT = "The theory's misfit from liquid to liquid"
+
+MISFIT_EXPLAINED = (
+    "The model knows how liquids differ, so that a theory that is right would leave nothing of this."
+)
+
+LIQUID_INPUTS = {"viscosity", "speed_viscosity_product"}
+"""Columns by which a model knows liquids, if it does not take their flow curves."""
 
 Triple = tuple[float, float, float]
 
@@ -112,7 +116,7 @@ def group_sentences(fit: Fit) -> list[str]:
     logarithmic = findings[0].logarithmic
     said.append(
         f"Beside the noise: single values scatter about all this by {_size(fit, middle, logarithmic)} "
-        f"(90 %: {_sizes(fit, low, high, logarithmic)}). {compared}. Of the variance that the theory leaves there lies "
+        f"(90 %: {_sizes(fit, low, high, logarithmic)}). {compared}. Of the variance that the model leaves there lies "
         f"{and_list([*parts, f'{percent(1.0 - sum(shares))} in single values'])}."
     )
     return said
@@ -137,7 +141,8 @@ def effect_rows(fit: Fit) -> list[tuple[str, str, str, str]]:
 
 def _sentence(fit: Fit, finding: GroupFinding) -> str:
     many = plural(finding.column)
-    heading = HEADINGS.get(finding.column, f"How {many} differ")
+    misfit = finding.column == "liquid" and _knows_liquids(fit)
+    heading = MISFIT if misfit else HEADINGS.get(finding.column, f"How {many} differ")
     low, middle, high = finding.scale
     size = f"{heading}: {_size(fit, middle, finding.logarithmic)} (standard deviation"
     if high > low:
@@ -146,7 +151,7 @@ def _sentence(fit: Fit, finding: GroupFinding) -> str:
         size += f"), typically a factor of {number(float(np.exp(middle)), 3)} up or down."
     else:
         size += ")."
-    said = [size] + ([MISFIT[finding.column]] if finding.column in MISFIT else [])
+    said = [size] + ([MISFIT_EXPLAINED] if misfit else [])
     apart = sum(1 for q05, _, q95 in finding.effects.values() if q05 > 0.0 or q95 < 0.0)
     said.append(
         f"{apart or 'None'} of {len(finding.effects)} {many} {'lies' if apart <= 1 else 'lie'} off the middle "
@@ -158,9 +163,16 @@ def _sentence(fit: Fit, finding: GroupFinding) -> str:
     return " ".join(said)
 
 
+def _knows_liquids(fit: Fit) -> bool:
+    """Whether what differs between liquids enters the model."""
+    return bool(LIQUID_INPUTS & set(fit.groups["constant_data"].data_vars)) or "[rheology]" in str(
+        fit.provenance["model_text"]
+    )
+
+
 def _effect(fit: Fit, finding: GroupFinding, level: str) -> str:
     middle = finding.effects[level][1]
-    return f"× {number(float(np.exp(middle)), 3)}" if finding.logarithmic else quantity(middle, _unit(fit))
+    return f"×\u00a0{number(float(np.exp(middle)), 3)}" if finding.logarithmic else quantity(middle, _unit(fit))
 
 
 def _size(fit: Fit, value: float, logarithmic: bool) -> str:

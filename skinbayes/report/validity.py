@@ -83,7 +83,7 @@ def validity_sentences(fit: Fit) -> list[str]:
     if not found:
         if fit.problem is not None and fit.problem.forward.flags is not None:
             return ["Where the theory ends was not looked at when this result was made; fit again to know."]
-        return ["The forward model marks no predictions as doubtful: it either gives a value or none."]
+        return ["The forward model marks no predictions as doubtful; it either gives a value or none."]
     names, said = row_names(fit), []
     for flag in found:
         rows = np.flatnonzero(flag.flagged)

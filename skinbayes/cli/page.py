@@ -1,0 +1,37 @@
+"""Write the page of a run, with the yardsticks that its model names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from skinbayes.comparison import Yardsticks
+    from skinbayes.fit import Fit
+
+
+def write_page(fit: Fit, page: Path, run: Path | None, with_yardsticks: bool = True) -> Yardsticks | None:
+    """Write the page of a fit; models without theory that its model file names are fitted before, unless that was done.
+
+    Parameters
+    ----------
+    fit : the fit
+    page : the file to write
+    run : the run directory, in which the fits of yardsticks are kept; None keeps nothing
+    with_yardsticks : False leaves them out
+
+    Returns
+    -------
+    Yardsticks or None
+        The fit beside its yardsticks, if it has any
+    """
+    from skinbayes.cli.progress import yardstick_progress
+    from skinbayes.comparison import against_yardsticks
+    from skinbayes.report import write_report
+
+    yardsticks = None
+    if with_yardsticks and fit.problem is not None and fit.problem.spec.yardsticks:
+        with yardstick_progress() as progress:
+            yardsticks = against_yardsticks(fit, run, progress)
+    write_report(fit, page, yardsticks)
+    return yardsticks
