@@ -114,9 +114,20 @@ _ALL = (
     _closed("speed_viscosity_product", "ηv", "N/m", "viscosity times sliding speed"),
     Quantity("velocity_shift_factor", "a", "1", "theory is evaluated at a·ηv"),
     Quantity(
-        "inlet_film_limit", "3πηv/f_N", "1", "largest 3π ηv over load per length at which friction is predicted"
+        "inlet_film_limit",
+        "3πηv/f_N",
+        "1",
+        "largest 3π ηv over load per length at which friction is predicted",
     ),
-    _closed("additive_friction", "μ_add", "1", "friction that adds to that of the theory, whatever the speed"),
+    Quantity(
+        "strain_limit",
+        "b/Rc",
+        "1",
+        "largest half width of the contact over radius at which friction is predicted",
+    ),
+    _closed(
+        "additive_friction", "μ_add", "1", "friction that adds to that of the theory, whatever the speed"
+    ),
     _closed(
         "friction_coefficient_boundary", "μ_b", "1", "part of the friction made in the area of real contact"
     ),
@@ -131,7 +142,9 @@ _ALL = (
     _closed("central_film_thickness", "u_c", "m", "mean separation under the middle of the ball"),
     # descriptions of friction without a theory
     Quantity("typical_friction_coefficient", "μ_typ", "1", "friction coefficient that depends on nothing"),
-    Quantity("plateau_friction_coefficient", "μ_0", "1", "friction coefficient at small speed times viscosity"),
+    Quantity(
+        "plateau_friction_coefficient", "μ_0", "1", "friction coefficient at small speed times viscosity"
+    ),
     Quantity(
         "transition_speed_viscosity_product",
         "S_t",
@@ -139,7 +152,9 @@ _ALL = (
         "speed times viscosity at which friction leaves its plateau, at a load of 1 N",
     ),
     Quantity("transition_exponent", "a_t", "1", "how abruptly friction leaves its plateau"),
-    Quantity("transition_load_exponent", "m_t", "1", "power of the load with which the transition moves", -inf),
+    Quantity(
+        "transition_load_exponent", "m_t", "1", "power of the load with which the transition moves", -inf
+    ),
     Quantity("rising_friction_coefficient", "μ_r", "1", "friction of the rising branch at the transition"),
     Quantity("rising_exponent", "b_r", "1", "power of speed times viscosity with which friction rises"),
     # water

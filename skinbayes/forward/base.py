@@ -92,6 +92,7 @@ class ForwardModel:
     flag_meanings : what each flag says, a clause
     prepare : ``(ranges, tables, progress, cores) ->`` the same model with a faster evaluation within ranges, or None
     accuracy : a sentence on the error of the evaluation, empty if it is that of the physics below
+    costly : True if an evaluation takes so long (a tenth of a millisecond) that fewer walkers are better
     uses_flow_curves : True if flow curves of liquids may stand for ``viscosity``
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
     """
@@ -116,6 +117,7 @@ class ForwardModel:
     prepare: Callable[[Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""
     abscissa: Callable[[Inputs, Tables], FloatArray] | None = None
+    costly: bool = False
     uses_flow_curves: bool = False
 
     def required_names(self) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed
 
 SILENT = {
     "impossible": "an input is not physical",
-    "too_strained": f"the contact is wider than {LARGEST_STRAIN:g} of the cylinder's radius (b/Rc)",
+    "too_strained": "the contact is too wide for the ball (b/Rc too large)",
     "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
     "not_converged": "no film was found",
 }
@@ -85,6 +85,7 @@ MODEL = ForwardModel(
         "velocity_shift_factor": 1.0,
         "additive_friction": 0.0,
         "inlet_film_limit": THICKEST_FILM,
+        "strain_limit": LARGEST_STRAIN,
     },
     evaluate=_evaluate,
     validate=validate_contact,
@@ -93,6 +94,7 @@ MODEL = ForwardModel(
     flag_meanings=FLAGS,
     prepare=_prepare,
     abscissa=_abscissa,
+    costly=True,
     uses_flow_curves=True,
     derived=_derived,
     derived_names=("rms_slope",),

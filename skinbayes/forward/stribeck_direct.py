@@ -14,6 +14,7 @@ from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
 from skinbayes.lubrication import (
     LARGE_STRAIN,
+    LARGEST_STRAIN,
     NOTABLE_STRAIN,
     THICKEST_FILM,
     StribeckCurve,
@@ -39,6 +40,7 @@ FIELDS = {
 FLAGS = {
     "strained": f"the contact is strained (b/Rc above {NOTABLE_STRAIN:g}), where Hertz's theory is stretched",
     "largely_strained": f"the contact is nearly half as wide as the ball, or wider (b/Rc above {LARGE_STRAIN:g})",
+    "strained_beyond_ball": f"the contact is wider than the shape of a ball allows (b/Rc above {LARGEST_STRAIN:g})",
     "film_near_inlet": f"the film is thick for the inlet that the ball offers (3π ηv/f_N above {NOTABLE_FILM:g})",
     "film_beyond_inlet": f"the film is thicker than the inlet that the ball offers (3π ηv/f_N above {THICKEST_FILM:g}), so "
     "that more than a fifth of the load is carried beyond its edge",
@@ -67,13 +69,14 @@ def curve_of(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCu
         inputs["frictional_shear_stress"],
         inputs["area_correction"],
         inputs["velocity_shift_factor"],
-        thickest_film=film_limit_of(inputs),
+        thickest_film=limit_of(inputs, "inlet_film_limit"),
+        largest_strain=limit_of(inputs, "strain_limit"),
     )
 
 
-def film_limit_of(inputs: Inputs) -> float:
-    """Return the largest 3π ηv/f_N at which friction is predicted."""
-    return float(np.ravel(inputs["inlet_film_limit"])[0])
+def limit_of(inputs: Inputs, name: str) -> float:
+    """Return the largest 3π ηv/f_N, or b/Rc, at which friction is predicted; the same for all rows and vectors."""
+    return float(np.ravel(inputs[name])[0])
 
 
 def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, FloatArray]:
@@ -154,7 +157,8 @@ def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str,
             number["frictional_shear_stress"],
             number["area_correction"],
             number["velocity_shift_factor"],
-            thickest_film=film_limit_of(one),
+            thickest_film=limit_of(one, "inlet_film_limit"),
+            largest_strain=limit_of(one, "strain_limit"),
         )
         rows.append(_everything(curve, one))
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
@@ -175,6 +179,7 @@ def _everything(curve: StribeckCurve, inputs: Inputs) -> dict[str, FloatArray]:
                "shear_rate_unmeasured")  # fmt: skip
     found |= {name: np.asarray(getattr(curve, name), dtype=float) for name in reasons}
     column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
+    found["strained_beyond_ball"] = np.asarray(curve.strain > LARGEST_STRAIN, dtype=float)[..., np.newaxis]
     flags = film_flags(column, curve.speed_viscosity_product)
     found |= {name: flag.astype(float) for name, flag in flags.items()}
     found["speed_viscosity_product"] = curve.speed_viscosity_product

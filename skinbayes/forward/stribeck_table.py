@@ -13,13 +13,14 @@ from skinbayes.forward.base import Inputs, Progress, Ranges, Tables
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     film_flags,
-    film_limit_of,
+    limit_of,
     speed_viscosity_product_of,
     strain_of,
 )
 from skinbayes.forward.table_cache import Stored, cached
 from skinbayes.lubrication import (
     LARGE_STRAIN,
+    LARGEST_STRAIN,
     NOTABLE_STRAIN,
     FilmTable,
     build_film_table,
@@ -71,6 +72,7 @@ class TabulatedStribeck:
         return {
             "strained": strain > NOTABLE_STRAIN,
             "largely_strained": strain > LARGE_STRAIN,
+            "strained_beyond_ball": strain > LARGEST_STRAIN,
             **{name: np.broadcast_to(flag, shape) for name, flag in film_flags(inputs, products).items()},
             "shear_rate_unmeasured": found["shear_rate_unmeasured"] > 0,
         }
@@ -84,7 +86,8 @@ class TabulatedStribeck:
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
         stress, shift = inputs["frictional_shear_stress"], inputs["velocity_shift_factor"]
-        others = (parameters, stress, shift, True, film_limit_of(inputs))
+        limits = limit_of(inputs, "inlet_film_limit"), limit_of(inputs, "strain_limit")
+        others = (parameters, stress, shift, True, *limits)
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
             friction = tabulated_friction(self.table, products, *others)
@@ -128,15 +131,20 @@ def prepare(
     spectrum = spectrum_of(fixed, tables)
     held = {name: ranges[name] for name in AXES if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
-    layer, bulk, gamma = (
-        float(fixed[name]) for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+    layer, bulk, gamma, strain = (
+        float(fixed[name])
+        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction", "strain_limit")
     )
 
     def build() -> Stored:
-        table = build_film_table(held, spectrum, layer, bulk, gamma, processes=cores, progress=progress)
+        table = build_film_table(
+            held, spectrum, layer, bulk, gamma, processes=cores, progress=progress, largest_strain=strain
+        )
         return table.to_arrays()
 
-    stored = cached("stribeck", film_table_key(held, spectrum, layer, bulk, gamma), build)
+    stored = cached(
+        "stribeck", film_table_key(held, spectrum, layer, bulk, gamma, largest_strain=strain), build
+    )
     table = FilmTable.from_arrays(*stored)
     tabulated = TabulatedStribeck(table, names)
     middle, far, worst = (100 * float(error) for error in table.held_out)

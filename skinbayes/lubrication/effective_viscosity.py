@@ -19,7 +19,7 @@ from skinbayes.lubrication.film import NODES, lubricated_films
 from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.rheology import FlowCurve
-from skinbayes.lubrication.stribeck import THICKEST_FILM, StribeckCurve, stribeck_curve
+from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM, StribeckCurve, stribeck_curve
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _ROUNDS, _CLOSE = 60, 1e-7  # of the iteration for ln η
@@ -53,6 +53,7 @@ def stribeck_curve_of_liquid(
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
     thickest_film: float = THICKEST_FILM,
+    largest_strain: float = LARGEST_STRAIN,
 ) -> tuple[StribeckCurve, EffectiveViscosity]:
     """Stribeck curve of a liquid of measured flow curve, with one viscosity for the whole film (Appendix C of the paper).
 
@@ -72,7 +73,7 @@ def stribeck_curve_of_liquid(
     velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
     flow_factors : of the flow between rough surfaces; None for trivial ones
     nodes : number of places across the contact, dimensionless
-    thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
+    thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
@@ -125,7 +126,7 @@ def stribeck_curve_of_liquid(
     rate = np.exp(shear_rate(log_viscosity))
     curve = stribeck_curve(
         np.exp(log_viscosity) * speed, sphere_radius, normal_force, skin, spectrum, frictional_shear_stress, area_correction,
-        velocity_shift_factor, flow_factors, nodes=nodes, thickest_film=thickest_film,
+        velocity_shift_factor, flow_factors, nodes=nodes, thickest_film=thickest_film, largest_strain=largest_strain,
     )  # fmt: skip
     good = np.isfinite(curve.friction_coefficient)
     unmeasured = good & ~liquids.measured(rate)

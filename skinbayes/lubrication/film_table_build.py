@@ -51,6 +51,7 @@ def build_film_table(
     checked: int = CHECKED,
     processes: int = 1,
     progress: Progress | None = None,
+    largest_strain: float = LARGEST_STRAIN,
 ) -> FilmTable:
     """Table of the films under a ball on rough layered skin for parameters within ranges (Sect. 6 of the paper).
 
@@ -66,6 +67,7 @@ def build_film_table(
     checked : number of random places, dimensionless, at which the table is compared with direct solutions
     processes : how many solve at once, dimensionless
     progress : told the number of sweeps that are done and of all
+    largest_strain : b/Rc, dimensionless, that the table has to reach
 
     Returns
     -------
@@ -78,7 +80,7 @@ def build_film_table(
 
     Notes
     -----
-    The table ends where b/Rc is `LARGEST_STRAIN` for the largest ball and where p_H/√V is 0.3: the closer to complete contact,
+    The table ends where b/Rc is the largest strain for the largest ball and where p_H/√V is 0.3: the closer to complete contact,
     the stiffer the dependence on everything. With E0 from 1 to 30 MPa, E1 from 5 to 500 kPa, roughness from 2 to 60 µm, radius
     from 5 to 15 mm and force from 0.1 to 5 N, all varying, friction at any speed and shear stress is within 0.5 % of direct
     solutions at 99 of 100 random places, and within 0.75 % at the worst of 300; narrower ranges do better with fewer nodes.
@@ -100,7 +102,7 @@ def build_film_table(
     () True False
     """
     surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
-    axes = film_axes(ranges, poisson_ratio_bulk, LARGEST_STRAIN, counts, surface.stress_scale(ranges))
+    axes = film_axes(ranges, poisson_ratio_bulk, largest_strain, counts, surface.stress_scale(ranges))
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
     sweeps = len(places) + len(coarse_places) + checked
@@ -135,7 +137,11 @@ def build_film_table(
             np.full(3, np.nan),
             checked,
         )
-        return replace(table, held_out=_check(table, materials, checked, say, solve)) if checked else table
+        return (
+            replace(table, held_out=_check(table, materials, checked, say, solve, largest_strain))
+            if checked
+            else table
+        )
 
 
 def chebyshev_coefficients(values: FloatArray) -> FloatArray:
@@ -227,6 +233,7 @@ def _check(
     count: int,
     say: _Counter,
     solve: Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]],
+    largest_strain: float,
 ) -> FloatArray:
     """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
     rng = np.random.default_rng(20130)
@@ -235,7 +242,7 @@ def _check(
     while len(points) < count:
         drawn = rng.uniform(axes.low, axes.high)
         strain = film_scales(list(drawn), table.poisson_ratio_bulk).strain
-        if strain <= np.log(LARGEST_STRAIN) and axes.contains(list(drawn)):
+        if strain <= np.log(largest_strain) and axes.contains(list(drawn)):
             points.append(drawn)
     drawn = np.array(points)
     scales = film_scales(list(drawn.T), table.poisson_ratio_bulk)
@@ -259,6 +266,8 @@ def _check(
     )
     parameters = dict(zip(FILM_PARAMETERS, np.exp(drawn.T), strict=True))
     products = np.exp(number - scales.number_per_product)
-    tabulated = tabulated_friction(table, products, parameters, shear_stress).friction_coefficient
+    tabulated = tabulated_friction(
+        table, products, parameters, shear_stress, largest_strain=largest_strain
+    ).friction_coefficient
     errors = np.abs(tabulated / direct - 1)
     return np.array([np.quantile(errors, 0.5), np.quantile(errors, 0.99), errors.max()])

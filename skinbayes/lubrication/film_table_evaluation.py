@@ -49,7 +49,7 @@ class TabulatedFriction(NamedTuple):
     asperity_load_share : share of the load that asperities carry, dimensionless; nan if not asked for
     strain : b/Rc of the Hertz contact, dimensionless
     outside_table : the table does not hold the parameters, or λ is above 2e4
-    too_strained : b/Rc is above `LARGEST_STRAIN`
+    too_strained : b/Rc is above the largest strain
     film_beyond_ball : 3π ηv/f_N is above the thickest film
     """
 
@@ -74,6 +74,7 @@ def tabulated_friction(
     velocity_shift_factor: ArrayLike = 1.0,
     everything: bool = False,
     thickest_film: float = THICKEST_FILM,
+    largest_strain: float = LARGEST_STRAIN,
 ) -> TabulatedFriction:
     """Friction coefficient of a ball on lubricated rough skin, as `stribeck_curve` gives it, from a table (Sect. 6 of the paper).
 
@@ -85,7 +86,7 @@ def tabulated_friction(
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the theory is evaluated at a ηv
     everything : also give films and load share
-    thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
+    thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
@@ -118,7 +119,15 @@ def tabulated_friction(
     def part(vectors: slice) -> TabulatedFriction:
         logs, (product, stress, shift) = arguments.part(vectors)
         films = contract(table, logs, 6 if everything else 4)
-        return _friction(films, logs[0] + logs[2], np.log(product * shift), stress, everything, thickest_film)
+        return _friction(
+            films,
+            logs[0] + logs[2],
+            np.log(product * shift),
+            stress,
+            everything,
+            thickest_film,
+            largest_strain,
+        )
 
     return TabulatedFriction(*arguments.collect(part, table.coefficients.shape[-1]))
 
@@ -132,6 +141,7 @@ def tabulated_friction_of_liquids(
     velocity_shift_factor: ArrayLike = 1.0,
     everything: bool = False,
     thickest_film: float = THICKEST_FILM,
+    largest_strain: float = LARGEST_STRAIN,
 ) -> tuple[TabulatedFriction, EffectiveViscosity]:
     """Friction of a ball on lubricated rough skin with liquids of measured flow curves, from a table (Sect. 6 of the paper).
 
@@ -149,7 +159,7 @@ def tabulated_friction_of_liquids(
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the shear rate is that of the speed without it
     everything : also give films and load share
-    thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
+    thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
@@ -195,7 +205,9 @@ def tabulated_friction_of_liquids(
         log_shift = np.log(shift)
         log_viscosity, log_rate = viscosity_of_films(films, log_speed, log_shift, liquids)
         log_product = log_viscosity + log_speed + log_shift
-        friction = _friction(films, logs[0] + logs[2], log_product, stress, everything, thickest_film)
+        friction = _friction(
+            films, logs[0] + logs[2], log_product, stress, everything, thickest_film, largest_strain
+        )
         good = np.isfinite(friction.friction_coefficient)
         unmeasured = good & ((log_rate < liquids.lowest) | (log_rate > liquids.highest))
         rate, viscosity = (np.where(good, np.exp(x), np.nan) for x in (log_rate, log_viscosity))
@@ -256,11 +268,12 @@ def _friction(
     shear_stress: FloatArray,
     everything: bool,
     thickest_film: float,
+    largest_strain: float,
 ) -> TabulatedFriction:
     """Friction at ln(aηv), shape ``(B, N)``; ``log_stiffness`` is ln E0 h, Pa m."""
     scales = films.scales
     log_number = log_product + scales.number_per_product
-    strained = scales.strain > np.log(LARGEST_STRAIN)
+    strained = scales.strain > np.log(largest_strain)
     beyond = log_number + 2 * scales.strain > np.log(thickest_film)
     held = films.inside & (log_number <= films.smooth.highest)
     good = held & ~strained & ~beyond & np.isfinite(log_number) & (shear_stress >= 0)

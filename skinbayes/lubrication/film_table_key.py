@@ -29,6 +29,7 @@ def film_table_key(
     speeds: int = SPEEDS,
     nodes: int = TABLE_NODES,
     checked: int = CHECKED,
+    largest_strain: float = LARGEST_STRAIN,
 ) -> dict[str, Any]:
     """Everything that the numbers of a table of films depend on, for a key of a cache (Sect. 6 of the paper).
 
@@ -45,6 +46,7 @@ def film_table_key(
     speeds : number of speeds, dimensionless
     nodes : places across the contact, dimensionless
     checked : number of random places, dimensionless
+    largest_strain : b/Rc, dimensionless, that the table has to reach
 
     Returns
     -------
@@ -68,7 +70,7 @@ def film_table_key(
     {'young_modulus_bulk': 7, 'rms_height': 5}
     """
     surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
-    axes = film_axes(ranges, poisson_ratio_bulk, LARGEST_STRAIN, counts, surface.stress_scale(ranges))
+    axes = film_axes(ranges, poisson_ratio_bulk, largest_strain, counts, surface.stress_scale(ranges))
     ends = float(spectrum.wavevector_min), float(spectrum.wavevector_max)
     power = spectrum.power(np.geomspace(*ends, _PLACES)) / surface.rms_height**2
     return {
@@ -83,4 +85,5 @@ def film_table_key(
         "speeds": speeds,
         "nodes": nodes,
         "checked": checked,
+        "largest_strain": float(largest_strain),
     }

@@ -54,7 +54,7 @@ class StribeckCurve:
     strain : b/Rc of the Hertz contact, dimensionless, batch shape
     strained : b/Rc is above `NOTABLE_STRAIN`: Hertz's theory is stretched
     largely_strained : b/Rc is above `LARGE_STRAIN`
-    too_strained : b/Rc is above `LARGEST_STRAIN`
+    too_strained : b/Rc is above the largest strain
     film_beyond_ball : 3π ηv/f_N is above the thickest film: it is thicker than the inlet that the ball offers
     impossible : an input is not a number or not physical, such as a force or speed below 0
     not_converged : no film was found
@@ -87,7 +87,7 @@ class StribeckCurve:
         """Why points are missing or doubtful, one sentence a reason, with the number of points."""
         said = {
             "impossible": "an input is not physical",
-            "too_strained": f"the contact is wider than {LARGEST_STRAIN:g} of the cylinder's radius (b/Rc)",
+            "too_strained": "the contact is too wide for the ball (b/Rc too large)",
             "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
             "not_converged": "no film was found",
             "strained": f"b/Rc is above {NOTABLE_STRAIN:g}, where Hertz's theory is stretched",
@@ -112,6 +112,7 @@ def stribeck_curve(
     rheology: Rheology | None = None,
     nodes: int = NODES,
     thickest_film: float = THICKEST_FILM,
+    largest_strain: float = LARGEST_STRAIN,
 ) -> StribeckCurve:
     """Friction coefficient of a ball on lubricated rough skin (Sect. 6 of the paper, Fig. 13).
 
@@ -133,6 +134,7 @@ def stribeck_curve(
     rheology : viscosity against shear rate v/u; None for a Newtonian liquid
     nodes : number of places across the contact, dimensionless
     thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
+    largest_strain : b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
@@ -179,7 +181,14 @@ def stribeck_curve(
     knots, levels = (part.reshape(-1, part.shape[-1]) for part in points)
     rows = [
         _one_curve(
-            products, _Case(*case), AsperityTable(*points), flow_factors, rheology, nodes, thickest_film
+            products,
+            _Case(*case),
+            AsperityTable(*points),
+            flow_factors,
+            rheology,
+            nodes,
+            thickest_film,
+            largest_strain,
         )
         for case, *points in zip(cases.tolist(), knots, levels, strict=True)
     ]
@@ -213,6 +222,7 @@ def _one_curve(
     rheology: Rheology | None,
     nodes: int,
     thickest_film: float,
+    largest_strain: float,
 ) -> dict[str, Any]:
     """The fields of a `StribeckCurve` for one set of parameters."""
     cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, case.modulus)
@@ -224,7 +234,7 @@ def _one_curve(
         physical = physical & np.isfinite(table.log_pressure).all() & (np.diff(table.separation) > 0).all()
         possible = (shifted > 0) & (shifted < np.inf) & physical
         beyond = possible & (3 * np.pi * shifted > thickest_film * load)
-    wide = np.full(products.shape, bool(strain > LARGEST_STRAIN))
+    wide = np.full(products.shape, bool(strain > largest_strain))
     solved = possible & ~beyond & ~wide
     result: dict[str, Any] = {
         "speed_viscosity_product": products,

@@ -10,6 +10,10 @@ from skinbayes.errors import InputError
 DEFAULT_WALKERS = 128
 """Walkers of an ensemble unless the dimension asks for more: enough for a kernel density of half of them."""
 
+FEWER_WALKERS = 64
+"""The same for targets whose evaluation takes far longer than a step of the sampler: the steps that the stopping rule asks for do
+not depend on the number of walkers."""
+
 
 @dataclass(frozen=True)
 class SamplerOptions:
@@ -23,7 +27,7 @@ class SamplerOptions:
     seed : non-negative integer from which every random stream is spawned
     ensembles : number of independent ensembles; they are the chains of R-hat
     walkers : walkers of each ensemble, even and at least twice the dimension; None is
-        :data:`DEFAULT_WALKERS` or four times the dimension, whichever is larger
+        :data:`DEFAULT_WALKERS` (:data:`FEWER_WALKERS` if ``costly``) or four times the dimension, whichever is larger
     ess : effective sample size wanted in every coordinate, over all ensembles together
     r_hat : largest acceptable rank-normalised split R-hat between ensembles
     steps_over_tau : kept steps, summed over the ensembles, must reach this many autocorrelation times
@@ -31,6 +35,7 @@ class SamplerOptions:
     block_steps : steps between two writes to the store
     cores : worker processes that share the ensembles
     vectorize : evaluate half an ensemble in one call, else walker by walker
+    costly : the target takes so long to evaluate that fewer walkers are better
 
     Raises
     ------
@@ -55,6 +60,7 @@ class SamplerOptions:
     block_steps: int = 100
     cores: int = 1
     vectorize: bool = True
+    costly: bool = False
 
     def __post_init__(self) -> None:
         _whole("seed", self.seed, 0)
@@ -73,7 +79,7 @@ class SamplerOptions:
     def walkers_for(self, dimension: int) -> int:
         """Walkers of each ensemble for a target of ``dimension`` coordinates; InputError if too few were asked for."""
         if self.walkers is None:
-            return max(DEFAULT_WALKERS, 4 * dimension)
+            return max(FEWER_WALKERS if self.costly else DEFAULT_WALKERS, 4 * dimension)
         if self.walkers < 2 * dimension:
             raise InputError(
                 f"sampler option walkers: {self.walkers} found, at least {2 * dimension} expected "
