@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.predictive import LEVELS, observables, observed_values
+from skinbayes.plot.profile_bands import curve_at_row
 from skinbayes.plot.rows import (
     RowPredictions,
     effect_draws,
@@ -162,7 +163,7 @@ def _typical(fit: Fit, problem: Problem) -> tuple[FloatArray, FloatArray] | None
     ranks = [np.argsort(np.argsort(values)) for values in problem.conditions.values.values()]
     count = problem.conditions.n_rows
     row = int(np.argmin(sum((np.abs(rank - 0.5 * (count - 1)) for rank in ranks), start=np.zeros(count))))
-    grid, curve = problem.profile(followed[0], middle[np.newaxis], row)
+    grid, curve = curve_at_row(problem, followed[0], middle[np.newaxis], row)
     return grid, curve[0]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,7 +53,7 @@ def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
     shared = len(groups) == 1
     names, bands = row_names(fit), []
     for position, rows in groups:
-        abscissa, curves = problem.profile(profile, theta, rows[0])
+        abscissa, curves = curve_at_row(problem, profile, theta, rows[0])
         # where the theory gives no value for some of the draws, the others make the band
         known = np.isfinite(curves).any(axis=0)
         quantiles = np.full((len(LEVELS), len(abscissa)), np.nan)
@@ -61,6 +61,38 @@ def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
         label = position + _row_text(names, rows, shared) + _load(problem, middle, rows)
         bands.append(Band(label, rows, abscissa, quantiles))
     return bands
+
+
+def curve_at_row(
+    problem: Problem, profile: Profile, theta: FloatArray, row: int
+) -> tuple[FloatArray, FloatArray]:
+    """A curve at the conditions of one row: abscissa ``(K,)`` and ordinate ``(B, K)``, SI.
+
+    Where the abscissa is an input and the ordinate what the model predicts, this is the prediction, of the prepared and so
+    much faster model, with what the problem adds to it (discrepancy, covariates); else it is the curve as it is offered.
+    """
+    model = problem.model
+    if profile.abscissa not in model.input_names() or profile.ordinate not in model.observables:
+        return problem.profile(profile, theta, row)
+    # what else could say where on the curve a row lies must not
+    instead = {
+        name
+        for ways in model.alternatives()
+        if any(profile.abscissa in way for way in ways)
+        for way in ways
+        for name in way
+    }
+    inputs = {
+        name: np.ascontiguousarray(
+            np.broadcast_to(value, (len(value), problem.conditions.n_rows))[:, row, np.newaxis]
+        )
+        for name, value in problem.inputs(theta).items()
+        if name not in instead
+    }
+    tables = replace(problem.tables, flow_curves=None)
+    grid = profile.grid({name: value[:, 0] for name, value in inputs.items()}, problem.tables.at_row(row))
+    found = problem.evaluate({**inputs, profile.abscissa: grid[np.newaxis]}, tables)[profile.ordinate]
+    return grid, np.array(np.broadcast_to(found, (len(theta), len(grid))))
 
 
 def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tuple[str, list[int]]]:
@@ -78,7 +110,7 @@ def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tupl
         same.append(row)
     # rows of the same inputs share a curve without it being computed again, and others may still do
     for alike_rows in alike.values():
-        grid, curve = problem.profile(profile, middle, alike_rows[0])
+        grid, curve = curve_at_row(problem, profile, middle, alike_rows[0])
         both = np.concatenate([grid, curve[0]])
         for known, rows in groups:
             if np.allclose(known, both, rtol=SAME, atol=0.0, equal_nan=True):
