@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 REFIT_ESS = 1000.0
 """Effective sample size of a refit unless told otherwise."""
 
+REFIT_STEPS = 4000
+"""Steps after which a refit ends, converged or not: there may be many refits."""
+
 DRAWS_PER_CHAIN = 1000
 
 PART = 250
@@ -67,7 +70,7 @@ def predict_left_out(
 
     reduced = without_level(problem, column, level)
     target = reduced.target()
-    chains = run_ensembles(target, SamplerOptions(seed=seed, ess=ess))
+    chains = run_ensembles(target, SamplerOptions(seed=seed, ess=ess, max_steps=REFIT_STEPS))
     positions, _ = chains.draws(DRAWS_PER_CHAIN)
     draws = target.transform.inverse(positions.reshape(-1, positions.shape[-1]))
     place = list(dict.fromkeys(problem.conditions.labels[column].tolist())).index(level)
