@@ -196,6 +196,9 @@ def _panel(ax: Axes, view: _View, level: str) -> None:
 def _dress(ax: Axes, view: _View) -> None:
     """Limits and ticks, which all panels share."""
     shown = np.concatenate([view.y, view.bands[2]])
+    if view.typical is not None:
+        x, y = view.typical
+        shown = np.concatenate([shown, y[(x >= view.x.min()) & (x <= view.x.max())]])
     for scale, setter, limits, axis, values in (
         (view.x_scale, ax.set_xscale, ax.set_xlim, ax.xaxis, view.x),
         (view.y_scale, ax.set_yscale, ax.set_ylim, ax.yaxis, shown[np.isfinite(shown)]),

@@ -78,9 +78,13 @@ def plot_profile(fit: Fit, abscissa: str | None = None) -> Figure:
             bottom=key + 0.5, top=top, between=(0.0, 0.15), panels=(1, len(drawn)),
         )  # fmt: skip
         axes = figure.subplots(len(drawn), 1, squeeze=False, sharex=True)[:, 0]
-        for ax, (profile, bands) in zip(axes, drawn, strict=True):
+        ends = [
             _panel(ax, fit, fit.problem, profile, bands)
-        shown = scale_for(axis_name(abscissa)[0], *(band.abscissa for _, bands in drawn for band in bands))
+            for ax, (profile, bands) in zip(axes, drawn, strict=True)
+        ]
+        shown, low, high = ends[0][0], min(end[1] for end in ends), max(end[2] for end in ends)
+        axes[-1].set_xlim(low, high)
+        ticks(axes[-1].xaxis, shown, low, high, most=6, between=True)
         axes[-1].set_xlabel(shown.label(axis_name(abscissa)[1]))
         if zoom is not None:
             _magnification_axis(axes[0], zoom / shown.factor)
@@ -94,7 +98,10 @@ def profile_abscissas(problem: Problem) -> list[str]:
     return list(dict.fromkeys(profile.abscissa for profile in problem.model.profiles))
 
 
-def _panel(ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[Band]) -> None:
+def _panel(
+    ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[Band]
+) -> tuple[Scale, float, float]:
+    """Draw one curve and its data; return the scale of the abscissa and the ends of what was drawn."""
     x_unit, _ = axis_name(profile.abscissa)
     y_unit, y_name = axis_name(profile.ordinate)
     x_scale = axis_scale(profile.abscissa, scale_for(x_unit, *(band.abscissa for band in bands)))
@@ -115,16 +122,27 @@ def _panel(ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[B
     for scale, setter in ((x_scale, ax.set_xscale), (y_scale, ax.set_yscale)):
         if scale.logarithmic:
             setter("log")
-    ends = np.concatenate([x_scale.shown(band.abscissa) for band in bands] + [x_scale.shown(measured)])
-    ax.set_xlim(float(ends.min()), float(ends.max()))
     if profile.abscissa == "time" and all(float(np.nanmin(band.quantiles)) >= 0.0 for band in bands):
         ax.set_ylim(bottom=0.0)
-    ticks(ax.xaxis, x_scale, *ax.get_xlim(), most=6, between=True)
     ticks(ax.yaxis, y_scale, *ax.get_ylim(), most=6, between=True)
     ax.grid(color="#E6E6E6", linewidth=0.6)
     ax.set_axisbelow(True)
     label = y_scale.label(y_name)
     ax.set_ylabel(label if len(label) < 34 else label.replace(" $", "\n$", 1))
+    return x_scale, *_ends(x_scale, bands, measured)
+
+
+def _ends(scale: Scale, bands: list[Band], measured: FloatArray) -> tuple[float, float]:
+    """Ends of the common axis: those of the curves, and some room beyond data that lie outside."""
+    curves = scale.shown(np.concatenate([band.abscissa for band in bands]))
+    low, high = float(curves.min()), float(curves.max())
+    if not len(measured):
+        return low, high
+    room = (high / low) ** 0.02 if scale.logarithmic else 0.02 * (high - low)
+    first, last = float(scale.shown(measured.min())), float(scale.shown(measured.max()))
+    if scale.logarithmic:
+        return min(low, first / room), max(high, last * room)
+    return (low if first >= low else first - room), (high if last <= high else last + room)
 
 
 def _data(

@@ -152,7 +152,7 @@ def _by_level(fit: Fit, problem: Problem) -> Iterator[Drawing]:
             f"Each panel shows one {one}: dots are measured, grey dots are all other {plural(column)}. Blue is what the fitted "
             f"model says for the conditions of these rows{own} without scatter: the line is the median, dark holds half, light "
             "90 % of the probability. It has corners where conditions change from row to row. A thin line is the curve for "
-            "typical conditions, the same in all panels.",
+            "typical conditions without effects, the same in all panels.",
         )  # fmt: skip
     if telling_columns(fit):
         bars = (

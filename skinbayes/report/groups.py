@@ -48,6 +48,7 @@ class GroupFinding:
     effects : level to the same quantiles of its effect
     over_noise : the same quantiles of the scale over the width of the noise; None if that is not at hand
     variance_share : share of the variance that the theory leaves, posterior mean; None if the noise is not at hand
+    mean : the same quantiles of the mean of the effects of all levels, which should be near 0
     """
 
     column: str
@@ -56,6 +57,12 @@ class GroupFinding:
     effects: dict[str, Triple]
     over_noise: Triple | None
     variance_share: float | None
+    mean: Triple
+
+    @property
+    def lopsided(self) -> bool:
+        """Whether the mean is further from 0 than two standard deviations of a mean of so many effects."""
+        return abs(self.mean[1]) > 2.0 * self.scale[1] / np.sqrt(len(self.effects))
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types, SI."""
@@ -65,6 +72,7 @@ class GroupFinding:
             "scale": dict(zip(keys, self.scale, strict=True)),
             "scale_over_noise": self.over_noise and dict(zip(keys, self.over_noise, strict=True)),
             "variance_share": self.variance_share,
+            "mean": dict(zip(keys, self.mean, strict=True)),
             "effects": {level: dict(zip(keys, found, strict=True)) for level, found in self.effects.items()},
         }
 
@@ -94,6 +102,7 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
                 {level: _triple(draws[:, i]) for i, level in enumerate(levels)},
                 over_noise,
                 share,
+                _triple(draws.mean(axis=1)),
             )
         )
     return found
@@ -158,8 +167,16 @@ def _sentence(fit: Fit, finding: GroupFinding) -> str:
         "with more than 90 % probability."
     )
     ordered = sorted(finding.effects, key=lambda level: finding.effects[level][1])
-    lowest, highest = (f"{level} ({_effect(fit, finding, level)})" for level in (ordered[0], ordered[-1]))
+    lowest, highest = (
+        f"{level} ({_shown(fit, finding, finding.effects[level][1])})" for level in (ordered[0], ordered[-1])
+    )
     said.append(f"Highest: {highest}; lowest: {lowest}.")
+    if finding.lopsided:
+        shared = "theory" if misfit else "model"
+        said.append(
+            f"Together they lie on one side, at {_shown(fit, finding, finding.mean[1])} on the average, too far for chance: the "
+            f"effects take up what the {shared} misses of all {many} alike, against its priors."
+        )
     return " ".join(said)
 
 
@@ -170,9 +187,9 @@ def _knows_liquids(fit: Fit) -> bool:
     )
 
 
-def _effect(fit: Fit, finding: GroupFinding, level: str) -> str:
-    middle = finding.effects[level][1]
-    return f"×\u00a0{number(float(np.exp(middle)), 3)}" if finding.logarithmic else quantity(middle, _unit(fit))
+def _shown(fit: Fit, finding: GroupFinding, value: float) -> str:
+    """An effect: a factor where it is one of ln."""
+    return f"×\u00a0{number(float(np.exp(value)), 3)}" if finding.logarithmic else quantity(value, _unit(fit))
 
 
 def _size(fit: Fit, value: float, logarithmic: bool) -> str:

@@ -83,7 +83,7 @@ def learnt(fit: Fit) -> list[str]:
             f"{narrowing_sentence(fit, update.name)}"
         )
         if update.verdict == "contradicted":
-            said[-1] += " " + _contradiction(update)
+            said[-1] += " The data contradict the prior here, see below."
     return said
 
 
@@ -128,14 +128,6 @@ def disagreements(fit: Fit) -> list[str]:
             )
         )
     return said
-
-
-def _contradiction(update: PriorUpdate) -> str:
-    side = "below" if update.prior_quantile < 0.5 else "above"
-    return (
-        f"The data contradict the prior: half of the posterior lies {side} values that the prior held to be "
-        "almost impossible. Question the prior, the model or the data before using the number."
-    )
 
 
 def not_learnt(fit: Fit) -> list[str]:

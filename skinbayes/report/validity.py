@@ -118,19 +118,20 @@ def _which(fit: Fit, names: list[str], rows: NDArray[np.intp]) -> str:
         return "These are all rows."
     said: list[str] = []
     flagged, left = set(rows.tolist()), set(rows.tolist())
-    counts: dict[str, dict[str, tuple[int, int]]] = {}
+    members: dict[str, dict[str, set[int]]] = {}
     for column in _label_columns(fit):
         of_row = levels_of_rows(fit, column)
-        members = {
-            level: set(np.flatnonzero(of_row == level).tolist()) for level in dict.fromkeys(of_row.tolist())
-        }
-        counts[column] = {level: (len(own & flagged), len(own)) for level, own in members.items()}
-        whole = [level for level, own in members.items() if len(own) > 1 and own <= flagged and own & left]
+        levels = list(dict.fromkeys(of_row.tolist()))
+        members[column] = {level: set(np.flatnonzero(of_row == level).tolist()) for level in levels}
+        own = members[column]
+        whole = [
+            level for level in levels if len(own[level]) > 1 and own[level] <= flagged and own[level] & left
+        ]
         if whole:
-            said.append(_whole(column, whole, list(members)))
-            left -= set().union(*(members[level] for level in whole))
-    if len(left) > MOST_NAMED and counts:
-        said.append(_mostly(counts))
+            said.append(_whole(column, whole, levels))
+            left -= set().union(*(own[level] for level in whole))
+    if len(left) > MOST_NAMED and members:
+        said.append(f"{'of the others ' if said else ''}most often rows of {_mostly(members, left)}")
     elif left:
         # names of rows hold commas themselves
         said.append(f"{'row' if len(left) == 1 else 'rows'} {'; '.join(names[row] for row in sorted(left))}")
@@ -155,16 +156,18 @@ def _whole(column: str, whole: list[str], levels: list[str]) -> str:
     return f"all rows of {and_list(whole)}"
 
 
-def _mostly(counts: dict[str, dict[str, tuple[int, int]]]) -> str:
-    """The levels with the largest shares of flagged rows, of the column that parts these best."""
+def _mostly(members: dict[str, dict[str, set[int]]], left: set[int]) -> str:
+    """The levels with the largest shares of some rows, of the column that parts these best."""
 
     def share(column: str, level: str) -> float:
-        flagged, of = counts[column][level]
-        return flagged / of
+        return len(members[column][level] & left) / len(members[column][level])
 
-    column = max(counts, key=lambda name: float(np.var([share(name, level) for level in counts[name]])))
-    levels = sorted(counts[column], key=lambda level: -share(column, level))[:MOST_LEVELS]
-    listed = and_list(
-        [f"{level} ({counts[column][level][0]} of {counts[column][level][1]})" for level in levels]
+    column = max(members, key=lambda name: float(np.var([share(name, level) for level in members[name]])))
+    levels = sorted(members[column], key=lambda level: -share(column, level))[:MOST_LEVELS]
+    return and_list(
+        [
+            f"{level} ({len(members[column][level] & left)} of {len(members[column][level])})"
+            for level in levels
+            if share(column, level) > 0.0
+        ]
     )
-    return f"most often rows of {listed}"

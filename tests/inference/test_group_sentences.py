@@ -39,7 +39,9 @@ def test_people_differ_and_the_theory_misses_liquids() -> None:
     assert factor == pytest.approx(np.exp(np.median(fit.draws("group_scale[liquid]"))), abs=0.005)
     # 0.05 wide about steps of 0.1: all but the one at 0 lie off
     assert "14 of 15 liquids lie off the middle" in liquids
-    assert re.search(r"lowest: water \(×\u00a00\.(49|50)", liquids)  # exp(−0.7) = 0.4966; water is the first of the data
+    assert re.search(
+        r"lowest: water \(×\u00a00\.(49|50)", liquids
+    )  # exp(−0.7) = 0.4966; water is the first of the data
     assert noise.startswith("Beside the noise: single values scatter about all this by")
 
 
@@ -101,7 +103,11 @@ def test_single_rows_are_named_and_many_are_summarised() -> None:
     many = np.where((people == "ID04") | (people == "ID07"), 1.0, 0.0)
     many[np.flatnonzero(people == "ID04")[0]] = many[np.flatnonzero(people == "ID07")[0]] = 0.0
     said = validity_sentences(with_flags(finger_fit(), wide=many))[0]
-    assert "Most often rows of ID04 (14 of 15), ID07 (14 of 15)" in said
+    assert "Most often rows of ID04 (14 of 15) and ID07 (14 of 15)." in said
+    both = np.where((people == "ID04") | (liquids() == "water"), 1.0, 0.0)
+    both[np.flatnonzero(people == "ID07")[3:13]] = 1.0
+    said = validity_sentences(with_flags(finger_fit(), wide=both))[0]
+    assert "All rows of ID04, all rows of water and of the others most often rows of ID07 (10 of 15)." in said
     but = np.where(liquids() == "water", 0.0, 1.0)
     assert "All rows of all liquids but water." in validity_sentences(with_flags(finger_fit(), wide=but))[0]
     assert "These are all rows." in validity_sentences(with_flags(finger_fit(), wide=np.ones(165)))[0]
@@ -168,3 +174,13 @@ def test_posterior_beyond_the_range_of_the_prior_is_said() -> None:
         assert words in said and "lies above" in said and said.startswith("Frictional shear stress σ_f:")
     inside = with_draws(fit, name, draws * np.quantile(before, 0.93) / np.median(draws))
     assert sentences.disagreements(inside) == []
+
+
+def test_effects_that_lie_on_one_side_are_said_to_swallow_a_common_misfit() -> None:
+    balanced, centres = known_effects()
+    assert "one side" not in group_sentences(balanced)[1]
+    lopsided = with_effects(balanced, "liquid", centres + 0.6, 0.05, 0.4)
+    said = group_sentences(lopsided)[1]
+    # 0.6 is six standard deviations of a mean of fifteen effects of scale 0.4; exp(0.6) = 1.82
+    assert "on one side, at ×\u00a01.8" in said and "misses of all liquids alike" in said
+    assert digest(lopsided)["groups"]["liquid"]["mean"]["median"] == pytest.approx(0.6, abs=0.02)

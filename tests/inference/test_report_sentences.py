@@ -46,7 +46,9 @@ def test_contradiction_between_data_and_prior_is_said() -> None:
     fit = made_up_fit(1, 3)
     far = with_draws(fit, "frictional_shear_stress", fit.draws("frictional_shear_stress") * 100.0)
     (line,) = sentences.learnt(far)
-    assert "contradict the prior" in line and "above" in line
+    assert "contradict the prior" in line
+    (why,) = sentences.disagreements(far)
+    assert "contradict the prior" in why and "lies above" in why
 
 
 def test_ridge_is_found_with_its_exponent() -> None:
