@@ -196,7 +196,7 @@ _ALL = (
     # groups of data
     _closed(
         "group_scale",
-        "s",
+        "σ_g",
         "1",
         "standard deviation of effects that groups of data share, of ln if the noise is logarithmic",
     ),

@@ -16,6 +16,9 @@ from skinbayes.statistics.transforms import VectorTransform
 NOT_UPDATED = 0.1
 """Contraction below which the data are said not to have updated a parameter."""
 
+MOVED = 0.2
+"""A posterior median in this tail of the prior means that the data moved a parameter even if they did not narrow it."""
+
 CONTRADICTED = 0.01
 """A posterior median in this tail of the prior means that data and prior contradict each other."""
 
@@ -39,7 +42,7 @@ class PriorUpdate:
     name: str
     contraction: float
     prior_quantile: float
-    verdict: Literal["updated", "not updated", "contradicted"]
+    verdict: Literal["updated", "moved", "not updated", "contradicted"]
 
     def sentence(self) -> str:
         """The finding in plain English."""
@@ -52,6 +55,13 @@ class PriorUpdate:
             )
         if self.verdict == "not updated":
             return f"{self.name}: not updated by the data; what is shown is the prior."
+        if self.verdict == "moved":
+            side = "below" if self.prior_quantile < 0.5 else "above"
+            share = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
+            return (
+                f"{self.name}: moved by the data but not narrowed; half of the posterior lies {side} a value that the prior "
+                f"gave {share} chance."
+            )
         left = float(np.sqrt(max(0.0, 1.0 - self.contraction)))
         return f"{self.name}: updated by the data; its standard deviation is {percent(left)} of the prior's."
 
@@ -75,8 +85,8 @@ def prior_updates(
 
     Returns
     -------
-    one finding per parameter: ``not updated`` if the contraction is below 0.1, ``contradicted`` if the posterior
-    median lies beyond the 1 % or 99 % quantile of the prior
+    one finding per parameter: ``contradicted`` if the posterior median lies beyond the 1 % or 99 % quantile of the prior;
+    otherwise, if the contraction is below 0.1, ``moved`` if it lies beyond the 20 % or 80 % quantile and ``not updated`` if not
 
     Examples
     --------
@@ -92,11 +102,11 @@ def prior_updates(
     contraction = 1.0 - after.var(axis=0, ddof=1) / before.var(axis=0, ddof=1)
     updates = []
     for name, shrunk, quantile in zip(names, contraction, share, strict=True):
-        verdict: Literal["updated", "not updated", "contradicted"] = "updated"
+        verdict: Literal["updated", "moved", "not updated", "contradicted"] = "updated"
         if not CONTRADICTED <= quantile <= 1.0 - CONTRADICTED:
             verdict = "contradicted"
         elif shrunk < NOT_UPDATED:
-            verdict = "not updated"
+            verdict = "not updated" if MOVED <= quantile <= 1.0 - MOVED else "moved"
         updates.append(PriorUpdate(name, float(shrunk), float(quantile), verdict))
     return tuple(updates)
 

@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 BINS = 128
 
-VERDICTS = {"updated": "updated", "not updated": "not updated", "contradicted": "contradicts the prior"}
+VERDICTS = {
+    "updated": "updated",
+    "moved": "moved, not narrowed",
+    "not updated": "not updated",
+    "contradicted": "contradicts the prior",
+}
 
 
 def plot_prior_posterior(fit: Fit) -> Figure:

@@ -100,6 +100,8 @@ def learnt_products(fit: Fit) -> list[str]:
 
 
 def _strength(update: PriorUpdate) -> str:
+    if update.verdict == "moved":
+        return "The data move it away from the middle of the prior but do not narrow it."
     left = np.sqrt(max(0.0, 1.0 - update.contraction))
     if left < 0.25:
         return "The data say much about it."

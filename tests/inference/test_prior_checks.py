@@ -50,3 +50,12 @@ def test_ridges_and_their_exponents():
     assert not linear.logarithmic
     assert "factor" not in linear.sentence()
     assert ridges(["a", "c"], draws[:, [0, 2]]) == ()
+
+
+def test_a_parameter_can_be_moved_without_being_narrowed() -> None:
+    rng = np.random.default_rng(4)
+    prior = rng.normal(size=(4000, 2))
+    posterior = rng.normal([-1.6, 0.3], 1.0, size=(4000, 2))
+    moved, still = prior_updates(["a", "b"], prior, posterior)
+    assert (moved.verdict, still.verdict) == ("moved", "not updated")
+    assert "below" in moved.sentence() and "not narrowed" in moved.sentence()
