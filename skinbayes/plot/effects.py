@@ -76,7 +76,7 @@ def plot_effects(fit: Fit, predictions: RowPredictions | None = None) -> Figure:
     longest = max(len(_short(level)) for column in columns for level in levels_of_rows(fit, column))
     with look():
         figure = new_figure(
-            WIDTH + 1.0, height, left=0.3 + 0.078 * longest, bottom=below, top=above, between=(0.0, between),
+            WIDTH + 1.4, height, left=0.3 + 0.078 * longest, bottom=below, top=above, between=(0.0, between),
             panels=(1, len(columns)),
         )  # fmt: skip
         grid = figure.add_gridspec(len(columns), 1, height_ratios=counts)

@@ -22,6 +22,7 @@ _SPOKEN = (
     (re.compile(r"^max wavevector"), "largest wavevector"),
     (re.compile(r"^rolloff wavevector"), "roll-off wavevector"),
     (re.compile(r"^relative_contact_area_(elastic|plastic)$"), r"\1 relative contact area"),
+    (re.compile(r"^mean_separation_wet$"), "mean separation in the wet area"),
     (re.compile(r"^rms_"), "root-mean-square "),
     (re.compile(r"^speed_viscosity_product$"), "speed times viscosity"),
     (re.compile(r"_"), " "),

@@ -106,9 +106,7 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "groups": groups,
         "effects": effect_rows(fit),
         "validity": validity_sentences(fit),
-        "loses": [] if yardsticks is None else [s for s in yardsticks.sentences() if " LOSES " in s],
-        "yardsticks": yardsticks
-        and {"sentences": yardsticks.sentences(), "headers": yardsticks.headers(), "rows": yardsticks.rows()},
+        **_yardsticks(yardsticks),
         "agreement": quality.agreement(fit),
         "convergence": [sentences.with_symbols(fit, sentence) for sentence in quality.convergence(fit)],
         "assumptions": _assumptions(fit, check),
@@ -117,6 +115,23 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "settings": tables.settings(fit),
         "model_text": str(fit.provenance["model_text"]),
         "references": fit.cite(),
+    }
+
+
+def _yardsticks(yardsticks: Yardsticks | None) -> dict[str, Any]:
+    """Sentences and table of the yardsticks; what makes the numbers themselves doubtful stands apart."""
+    if yardsticks is None:
+        return {"loses": [], "yardsticks": None}
+    said = yardsticks.sentences()
+    doubts = [sentence for sentence in said if "importance sampling" in sentence]
+    return {
+        "loses": [sentence for sentence in said if " LOSES to " in sentence],
+        "yardsticks": {
+            "sentences": [sentence for sentence in said if sentence not in doubts],
+            "doubts": doubts,
+            "headers": yardsticks.headers(),
+            "rows": yardsticks.rows(),
+        },
     }
 
 
