@@ -130,7 +130,11 @@ def _curves(problem: Problem) -> Iterator[Drawing]:
     for abscissa in profile_abscissas(problem):
         heading, reading = CURVES.get(abscissa, (f"Curves against {spoken_name(abscissa)}", ""))
         seen = {profile.ordinate for profile in problem.model.profiles if profile.abscissa == abscissa}
-        dots = " Scatter is not in them, so that dots may lie outside." if seen & set(problem.observables) else ""
+        dots = (
+            " Scatter is not in them, so that dots may lie outside."
+            if seen & set(problem.observables)
+            else ""
+        )
         yield Drawing(
             f"profile-{abscissa}".replace("_", "-"), partial(plot_profile, abscissa=abscissa), heading,
             "Curves of the forward model with their posterior bands, and the data that lie on them.",
