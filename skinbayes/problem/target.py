@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -75,15 +75,16 @@ class PosteriorTarget:
         """
         theta = self.problem.draw_prior(rng, CANDIDATES_PER_START * count)
         position = self.transform.forward(theta)
-        density = self.log_density(position)
-        usable = np.isfinite(density) & np.isfinite(position).all(axis=-1)
+        # the likelihood is what costs: it is evaluated once for each candidate
+        weight = self.problem.log_likelihood(theta) if self.use_likelihood else np.zeros(len(theta))
+        prior = replace(self, use_likelihood=False).log_density(position)
+        usable = np.isfinite(prior + weight) & np.isfinite(position).all(axis=-1)
         if usable.sum() < count:
             raise InputError(
                 f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density; "
                 "the priors mostly cover values at which the forward model gives no prediction (see 'skinbayes check')"
             )
-        position = position[usable]
-        weight = self.problem.log_likelihood(theta[usable]) if self.use_likelihood else np.zeros(usable.sum())
+        position, weight = position[usable], weight[usable]
         beta = _tempering(weight, count)
         # Gumbel top-k: sampling without replacement with probability ∝ exp(β·weight)
         keys = beta * weight + rng.gumbel(size=weight.shape)
