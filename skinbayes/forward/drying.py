@@ -92,6 +92,7 @@ def drying_model(name: str, summary: str, closure: Closure) -> ForwardModel:
         required=("time", *DRYING_INPUTS),
         optional=DRYING_DEFAULTS,
         accepted=DRYING_ACCEPTED,
+        costly=True,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
         derived=pressure_and_slope,

@@ -84,6 +84,7 @@ def features_model(name: str, summary: str, closure: Closure) -> ForwardModel:
         required=DRYING_INPUTS,
         optional=DRYING_DEFAULTS,
         accepted=DRYING_ACCEPTED,
+        costly=True,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
         explain=partial(_explain, closure=closure),

@@ -16,6 +16,7 @@ from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import SampleStore
+from skinbayes.sampling.stragglers import gathered, last_gathering
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.workers import advancing
 
@@ -85,13 +86,13 @@ def run_ensembles(
     rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
-    states = [block.end for block in rounds[-1]] if rounds else initial_states(target, options)
+    states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
     try:
         with advancing(target, options, moves) as advance_all:
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
-                    report = judge(_joined(rounds, "positions"), target.names, options)
+                    report = _judged(target, options, rounds)
                 if progress is not None:
                     progress(Progress(steps, last, report))
                 if report is not None and (report.converged or steps >= last):
@@ -100,11 +101,11 @@ def run_ensembles(
                 if store is not None:
                     store.append(blocks)
                 rounds.append(blocks)
-                states = [block.end for block in blocks]
+                states = gathered(blocks, len(rounds), options.seed)
     except KeyboardInterrupt:
         if not rounds:
             raise SamplingInterrupted(None) from None
-        report = judge(_joined(rounds, "positions"), target.names, options)
+        report = _judged(target, options, rounds)
         raise SamplingInterrupted(_chains(target, options, rounds, report)) from None
 
 
@@ -130,6 +131,11 @@ def draw_identity(
         "sampler option block_steps": options.block_steps,
         "moves": f"{moves.__module__}.{moves.__qualname__}",
     }
+
+
+def _judged(target: Target, options: SamplerOptions, rounds: list[list[Block]]) -> StoppingReport:
+    discarded = last_gathering(rounds) * options.block_steps
+    return judge(_joined(rounds, "positions"), target.names, options, discarded)
 
 
 def _joined(rounds: list[list[Block]], name: str) -> FloatArray:

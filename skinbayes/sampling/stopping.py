@@ -14,7 +14,8 @@ A run has converged if all of this holds in every coordinate, on the ranks of th
 6. every walker has moved.
 
 Burn-in, which is discarded, is ten autocorrelation times of the second half or a fifth of the steps, whichever
-is longer, but at most half.
+is longer, but at most half; and if walkers that were left behind were taken along (see ``stragglers``), all steps until then
+and a fifth of those after it.
 
 Fifty autocorrelation times are asked of the sum over ensembles, not of each, because the autocorrelation is
 averaged over all walkers of all ensembles about their common mean, and is then known to 6 % from 12.5
@@ -120,7 +121,9 @@ def is_check(steps: int, block_steps: int) -> bool:
         check = ceil(check * CHECK_GROWTH)
 
 
-def judge(positions: FloatArray, names: tuple[str, ...], options: SamplerOptions) -> StoppingReport:
+def judge(
+    positions: FloatArray, names: tuple[str, ...], options: SamplerOptions, discarded: int = 0
+) -> StoppingReport:
     """Apply the stopping rule.
 
     Parameters
@@ -128,6 +131,7 @@ def judge(positions: FloatArray, names: tuple[str, ...], options: SamplerOptions
     positions : all steps so far, shape ``(ensembles, steps, walkers, D)``
     names : the D coordinates
     options : what is asked for
+    discarded : steps at the beginning that must not be kept, fewer than there are
 
     Returns
     -------
@@ -135,6 +139,8 @@ def judge(positions: FloatArray, names: tuple[str, ...], options: SamplerOptions
     """
     steps = positions.shape[1]
     burn_in = _burn_in(positions)
+    if discarded:
+        burn_in = max(burn_in, discarded + ceil((steps - discarded) / 5))
     kept = positions[:, burn_in:]
     stride = max(1, ceil(kept.shape[1] / JUDGED_STEPS))
     judged = kept[:, ::-1][:, ::stride][:, ::-1]
