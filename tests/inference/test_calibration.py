@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy import stats
+from simulated_coverage import with_data
 from small_models import finger, student, three_parameters
 
 from skinbayes.fit import sample
@@ -38,7 +38,7 @@ def test_ranks_are_uniform_and_intervals_cover(build, tmp_path: Path) -> None:
         truth = problem.draw_prior(rng, 1)[0]
         data = problem.simulate(truth, rng)
         fit = sample(
-            replace(problem, observed=data, fingerprint=f"simulation {i}"),
+            with_data(problem, data, f"simulation {i}"),
             seed=i,
             ess=400,
             walkers=32,
@@ -66,7 +66,7 @@ def test_few_simulations(tmp_path: Path) -> None:
         truth = problem.draw_prior(rng, 1)[0]
         data = problem.simulate(truth, rng)
         fit = sample(
-            replace(problem, observed=data, fingerprint=f"simulation {i}"),
+            with_data(problem, data, f"simulation {i}"),
             seed=i,
             ess=200,
             walkers=32,
