@@ -52,7 +52,7 @@ def test_lists_hold_what_is_shipped(capsys):
         assert entry["licence"] and entry["title"] and entry["rows"] > 0
     text = run(capsys, "models").output
     for entry in models:
-        assert sum(entry["name"] in line.split() for line in text.splitlines()) == 1
+        assert sum([entry["name"]] == line.split()[:1] for line in text.splitlines()) == 1
 
 
 def test_show_says_where_priors_come_from(capsys):
