@@ -29,7 +29,12 @@ def test_the_models_of_this_version() -> None:
     assert {"contact-area", "finger-water", "forearm-glass", "forearm-glass-separate"} <= set(MODELS)
 
 
-@pytest.mark.parametrize("name", MODELS)
+def slow_where_a_table_is_built(names: list[str] | tuple[str, ...]) -> list[object]:
+    """Half a minute for the table of films; that such models load and evaluate is also held by their own fast tests."""
+    return [pytest.param(n, marks=pytest.mark.slow) if n.startswith("finger-stribeck") else n for n in names]
+
+
+@pytest.mark.parametrize("name", slow_where_a_table_is_built(MODELS))
 def test_it_loads_and_predicts(name: str) -> None:
     problem = sb.load_problem(name)
     prediction = problem.predict(problem.prior_medians())
