@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -19,6 +20,10 @@ from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
 from skinbayes.cli.template import template
 from skinbayes.errors import InputError
+
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+"""Set to 1 unless the user set them: the matrices are small, and threads of linear algebra stand in the way of the worker
+processes (a fit on two cores took a quarter longer with them). NumPy reads them when it is imported, which is later."""
 
 
 class _InOrder(click.Group):
@@ -47,6 +52,8 @@ for _command in (models, datasets, show, template, digitised, check, prior, pred
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; exits with the documented status."""
+    for name in ONE_THREAD:
+        os.environ.setdefault(name, "1")
     try:
         status = cli.main(
             args=None if arguments is None else list(arguments), prog_name="skinbayes", standalone_mode=False
