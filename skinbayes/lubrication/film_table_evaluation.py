@@ -28,7 +28,9 @@ from skinbayes.lubrication.flow_curves import LiquidRows
 from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM
 
 _POINTS = 8192  # of vectors times rows worked on at a time: arrays stay in the cache
-_COEFFICIENTS = 1 << 20  # numbers, at most, that the axes are summed up to at a time
+_COEFFICIENTS = (
+    1 << 21
+)  # numbers, at most, that the axes are summed up to at a time: 32 vectors of 165 rows in one piece
 _FRICTION, _EVERYTHING = (
     (BOUNDARY, COUETTE, PRESSURE_FLOW),
     (CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE),
