@@ -153,15 +153,10 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
             variables.setdefault(name, (("chain", "draw", "row"), values))
     groups = problem.groups
     if groups is not None and effects is not None:
-        start = 0
         for column, members in zip(groups.columns, groups.levels, strict=True):
             name, dimension = f"{column}_effect", f"{column}_level"
             coordinates[dimension] = list(members)
-            variables[name] = (
-                ("chain", "draw", dimension),
-                effects[..., start : start + len(members)],
-            )
-            start += len(members)
+            variables[name] = (("chain", "draw", dimension), effects[..., groups.effects_of(column)])
     dataset = _dataset(variables, draws, coordinates)
     for key, variable in dataset.data_vars.items():
         own = next((p for p in problem.free if p.name == key), None)

@@ -16,19 +16,11 @@ from skinbayes.forward.stribeck_direct import (
     speed_viscosity_product_of,
 )
 from skinbayes.forward.stribeck_table import prepare
-from skinbayes.lubrication import LARGEST_STRAIN, THICKEST_FILM
+from skinbayes.lubrication import LARGEST_STRAIN, SILENT, THICKEST_FILM
 from skinbayes.roughness import rms_slope
 
 SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
 """How the abscissa can be given; the first complete alternative is used."""
-
-SILENT = {
-    "impossible": "an input is not physical",
-    "too_strained": "the contact is too wide for the ball (b/Rc too large)",
-    "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
-    "not_converged": "no film was found",
-}
-"""Why there may be no prediction."""
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

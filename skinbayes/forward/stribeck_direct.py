@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import LayeredSkin, cylinder_of_sphere, line_contact, reduced_modulus
+from skinbayes.contact import LayeredSkin, cylinder_of_sphere, reduced_modulus
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
@@ -119,14 +119,6 @@ def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.boo
     with np.errstate(invalid="ignore"):
         share = 3 * np.pi * products * inputs["velocity_shift_factor"] / np.asarray(cylinder.load_per_length)
         return {"film_near_inlet": share > NOTABLE_FILM, "film_beyond_inlet": share > THICKEST_FILM}
-
-
-def strain_of(inputs: Inputs) -> FloatArray:
-    """b/Rc of the Hertz contact, broadcast shape of the inputs."""
-    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
-    cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], modulus)
-    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, modulus)
-    return np.asarray(line.half_width / cylinder.cylinder_radius)
 
 
 def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,14 +16,16 @@ from skinbayes.forward.stribeck_direct import (
     film_flags,
     limit_of,
     speed_viscosity_product_of,
-    strain_of,
 )
 from skinbayes.forward.table_cache import Stored, cached
 from skinbayes.lubrication import (
+    FILM_PARAMETERS,
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
     FilmTable,
+    FlowCurve,
+    LiquidRows,
     build_film_table,
     film_table_key,
     liquid_rows,
@@ -33,11 +36,6 @@ from skinbayes.roughness import rms_height
 
 if TYPE_CHECKING:
     from skinbayes.forward.base import ForwardModel
-
-AXES = (
-    "young_modulus_layer", "young_modulus_bulk", "rms_height", "sphere_radius", "normal_force", "layer_thickness",
-)  # fmt: skip
-"""Inputs that may vary within a table."""
 
 AFTERWARDS = (
     "frictional_shear_stress", "velocity_shift_factor", "additive_friction", "speed_viscosity_product", "viscosity",
@@ -67,8 +65,7 @@ class TabulatedStribeck:
     def flags(self, inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
         """The flags of `FLAGS`, each ``(B, N)``."""
         found, products = self._friction(inputs, tables)
-        shape = products.shape
-        strain = np.broadcast_to(strain_of(inputs), shape)
+        shape, strain = products.shape, found["strain"]
         return {
             "strained": strain > NOTABLE_STRAIN,
             "largely_strained": strain > LARGE_STRAIN,
@@ -82,7 +79,7 @@ class TabulatedStribeck:
         return self._friction(inputs, tables)[1]
 
     def _friction(self, inputs: Inputs, tables: Tables) -> tuple[dict[str, FloatArray], FloatArray]:
-        parameters = {name: inputs[name] for name in AXES if name in inputs}
+        parameters = {name: inputs[name] for name in FILM_PARAMETERS if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
         stress, shift = inputs["frictional_shear_stress"], inputs["velocity_shift_factor"]
@@ -94,15 +91,21 @@ class TabulatedStribeck:
             unmeasured = np.zeros(friction.friction_coefficient.shape)
         else:
             friction, liquid = tabulated_friction_of_liquids(
-                self.table, inputs["sliding_speed"], liquid_rows(tables.flow_curves), *others
+                self.table, inputs["sliding_speed"], _liquids(tables.flow_curves), *others
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
         found = {name: np.array(getattr(friction, field)) for name, field in FIELDS.items()}
-        found["shear_rate_unmeasured"] = unmeasured
+        found |= {"strain": friction.strain, "shear_rate_unmeasured": unmeasured}
         products = np.array(np.broadcast_to(products, unmeasured.shape))
         found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
         return found, products
+
+
+@lru_cache(maxsize=4)
+def _liquids(flow_curves: tuple[FlowCurve, ...]) -> LiquidRows:
+    """The tabulated flow curves of rows; the same at every evaluation of a likelihood."""
+    return liquid_rows(flow_curves)
 
 
 def prepare(
@@ -110,14 +113,14 @@ def prepare(
 ) -> ForwardModel:
     """The forward model with a table of films for the ranges, from disk if it was built before.
 
-    Inputs of `AXES` may vary, those of `AFTERWARDS` may do what they like; where anything else varies the film solver
+    Inputs of `FILM_PARAMETERS` may vary, those of `AFTERWARDS` may do what they like; where anything else varies the film solver
     itself is used, which is slow.
     """
     names = model.input_names()
     varying = [
         name
         for name, (low, high) in ranges.items()
-        if low != high and name in names and name not in (*AXES, *AFTERWARDS)
+        if low != high and name in names and name not in (*FILM_PARAMETERS, *AFTERWARDS)
     ]
     if varying:
         return replace(
@@ -129,7 +132,7 @@ def prepare(
     from skinbayes.forward.contact_inputs import spectrum_of
 
     spectrum = spectrum_of(fixed, tables)
-    held = {name: ranges[name] for name in AXES if name in ranges}
+    held = {name: ranges[name] for name in FILM_PARAMETERS if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
     layer, bulk, gamma, strain = (
         float(fixed[name])

@@ -34,6 +34,15 @@ THICKEST_FILM = 0.5
 """Largest 3π ηv/f_N = λ(b/Rc)², dimensionless. A fifth of the load is then carried beyond the edge of the ball, x = −Rc."""
 
 
+SILENT = {
+    "impossible": "an input is not physical",
+    "too_strained": "the contact is too wide for the ball (b/Rc too large)",
+    "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
+    "not_converged": "no film was found",
+}
+"""Flags where there is no prediction, and what they say."""
+
+
 @dataclass(frozen=True, eq=False)
 class StribeckCurve:
     """Friction of a lubricated ball and what it consists of; all but ``strain`` have the batch shape plus that of the speeds.
@@ -85,11 +94,7 @@ class StribeckCurve:
 
     def reasons(self) -> list[str]:
         """Why points are missing or doubtful, one sentence a reason, with the number of points."""
-        said = {
-            "impossible": "an input is not physical",
-            "too_strained": "the contact is too wide for the ball (b/Rc too large)",
-            "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
-            "not_converged": "no film was found",
+        said = SILENT | {
             "strained": f"b/Rc is above {NOTABLE_STRAIN:g}, where Hertz's theory is stretched",
             "largely_strained": f"b/Rc is above {LARGE_STRAIN:g}: the contact is nearly half as wide as the ball, or wider",
             "shear_rate_unmeasured": "the liquid is sheared at rates for which its viscosity was not measured",
