@@ -12,6 +12,7 @@ from skinbayes.wetting.evaporation import (
     film_of_droplet,
 )
 from skinbayes.wetting.film_contact import FILM_FLOOR, FilmContact, film_contact
+from skinbayes.wetting.humid_table import HumidTable, humid_groups, humid_table
 from skinbayes.wetting.humidity import (
     MOLECULE_DIAMETER,
     capillary_state_in_humid_air,
@@ -19,6 +20,7 @@ from skinbayes.wetting.humidity import (
     kelvin_radius,
     young_modulus_at_humidity,
 )
+from skinbayes.wetting.modulus_table import young_modulus_from_table
 from skinbayes.wetting.water import (
     density_of_water,
     latent_heat_of_evaporation,
@@ -38,6 +40,7 @@ __all__ = [
     "DryingCurve",
     "DryingFeatures",
     "FilmContact",
+    "HumidTable",
     "bridge_table",
     "capillary_state",
     "capillary_state_at_gap",
@@ -49,6 +52,8 @@ __all__ = [
     "evaporation_rate_from_pressures",
     "film_contact",
     "film_of_droplet",
+    "humid_groups",
+    "humid_table",
     "is_below_molecule",
     "kelvin_gap",
     "kelvin_radius",
@@ -58,4 +63,5 @@ __all__ = [
     "skin_groups",
     "surface_tension_of_water",
     "young_modulus_at_humidity",
+    "young_modulus_from_table",
 ]

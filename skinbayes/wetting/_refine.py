@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._mixture import Filled, Mixture, fill
+from skinbayes.wetting._types import BoolArray
 
 _RUNG = 0.12  # of the ladder of ln p on which roots are told apart
+_FIRST_RUNGS = 3  # looked at before the next six, and so on
 _CLOSE = 1e-12  # relative residual that is left
 _TOLERATED = 1e-9  # relative residual beyond which there is no solution
 _NUDGE = 1e-4  # of ln p, for slopes along it
@@ -23,7 +27,12 @@ def filled_at(source: GapSource, log_pressure: FloatArray, gap: FloatArray) -> t
 
 
 def roots_at_gaps(
-    source: GapSource, pressure: FloatArray, pull: FloatArray, gap: FloatArray, largest: bool
+    source: GapSource,
+    pressure: FloatArray,
+    pull: FloatArray,
+    gap: FloatArray,
+    largest: bool,
+    count: bool = True,
 ) -> tuple[FloatArray, FloatArray]:
     """ln p at Kelvin lengths, and how many roots there are.
 
@@ -37,20 +46,30 @@ def roots_at_gaps(
     pull : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
     gap : d, m, > 0, shape ``(B, F)``
     largest : take the largest root instead of the smallest
+    count : False stops at the smallest root, several times faster, and gives nan for the number of roots
     """
     start = np.log(pressure)
     strength = pull[:, None] / gap / pressure[:, None]
     end = start[:, None] + np.log1p(strength)
     rungs = max(2, int(np.ceil(np.nanmax(end - start[:, None], initial=0.0) / _RUNG)) + 1)
+
+    def residual(x: FloatArray) -> FloatArray:
+        area = filled_at(source, x, gap)[0].area
+        return np.asarray(x - start[:, None] - np.log1p(strength * area))
+
+    if not (count or largest):
+        low = start[:, None] + _RUNG * (_first_rise(source, start, strength, gap, rungs) - 1)
+        possible = np.isfinite(low) & np.isfinite(strength)
+        smallest = bracketed_roots(residual, low, low + _RUNG)
+        return np.where(possible, smallest, np.nan), np.full(gap.shape, np.nan)
     ladder = start[:, None] + _RUNG * np.arange(rungs)
     mixture, _ = source.at(np.exp(ladder))
     solutions = np.zeros(gap.shape)
     low, high = np.full(gap.shape, np.nan), np.full(gap.shape, np.nan)
     for row in range(pressure.size):
-        each = Mixture(*(np.tile(part[row], (gap.shape[1], 1)) for part in mixture))
-        area = fill(each, np.repeat(gap[row], rungs)).area.reshape(-1, rungs)
-        total = ladder[row] - start[row] - np.log1p(strength[row][:, None] * area)
-        above = total > 0
+        above = _above(
+            Mixture(*(part[row] for part in mixture)), ladder[row] - start[row], strength[row], gap[row]
+        )
         above[:, 0] = False
         # where the ladder ends below the upper bound, the bound itself is the last rung
         above = np.concatenate([above, np.ones((gap.shape[1], 1), dtype=bool)], axis=1)
@@ -61,24 +80,44 @@ def roots_at_gaps(
         low[row] = ladder[row][rung]
         high[row] = np.append(ladder[row][1:], ladder[row][-1] + _RUNG)[rung]
     possible = np.isfinite(low) & np.isfinite(strength)
-    found: FloatArray = np.where(possible, _bracketed(source, start, strength, gap, low, high), np.nan)
+    found: FloatArray = np.where(possible, bracketed_roots(residual, low, high), np.nan)
     return found, np.where(possible, solutions, np.nan)
 
 
-def _bracketed(
-    source: GapSource,
-    start: FloatArray,
-    strength: FloatArray,
-    gap: FloatArray,
-    low: FloatArray,
-    high: FloatArray,
+def _above(mixture: Mixture, rise: FloatArray, strength: FloatArray, gap: FloatArray) -> BoolArray:
+    """Where p exceeds p0 and the pull, shape ``(F, K)``, for the gaps of one skin at K pressures, ``rise`` = ln p/p0."""
+    each = Mixture(*(np.tile(part, (gap.size, 1)) for part in mixture))
+    area = fill(each, np.repeat(gap, rise.size)).area.reshape(-1, rise.size)
+    return np.asarray(rise - np.log1p(strength[:, None] * area) > 0)
+
+
+def _first_rise(
+    source: GapSource, start: FloatArray, strength: FloatArray, gap: FloatArray, rungs: int
 ) -> FloatArray:
-    """Roots between ``low`` and ``high``, by regula falsi with the weight of a stale end halved (Illinois)."""
+    """The first rung, from 1 on, at which p exceeds p0 and the pull, shape ``(B, F)``; ``rungs`` if none does; nan for nan."""
+    found = np.full(gap.shape, float(rungs))
+    sought = np.isfinite(start[:, None] + strength)
+    found[~sought] = np.nan
+    first, span = 1, _FIRST_RUNGS
+    rows = np.flatnonzero(sought.any(axis=1))
+    while rows.size and first < rungs:
+        rise: FloatArray = _RUNG * np.arange(first, min(first + span, rungs), dtype=np.float64)
+        mixture, _ = source.select(rows).at(np.exp(start[rows, None] + rise))
+        for place, row in enumerate(rows):
+            each = Mixture(*(part[place] for part in mixture))
+            above = _above(each, rise, strength[row], gap[row])
+            now = sought[row] & above.any(axis=1)
+            found[row, now] = first + above[now].argmax(axis=1)
+            sought[row] &= ~now
+        rows = rows[sought[rows].any(axis=1)]
+        first, span = first + span, 2 * span
+    return found
 
-    def residual(x: FloatArray) -> FloatArray:
-        area = filled_at(source, x, gap)[0].area
-        return np.asarray(x - start[:, None] - np.log1p(strength * area))
 
+def bracketed_roots(
+    residual: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Roots of ``residual`` between ``low`` and ``high``, by regula falsi with the weight of a stale end halved (Illinois)."""
     at_low, at_high = residual(low), residual(high)
     x = np.where(at_high == 0, high, low)
     active = (at_low < 0) & (at_high > 0)

@@ -90,6 +90,7 @@ def capillary_state_in_humid_air(
     area_correction: ArrayLike = AREA_CORRECTION,
     closure: Closure = "gaussian",
     branch: Branch = "approach",
+    count: bool = True,
 ) -> CapillaryState:
     """Contact of skin whose bridges are in equilibrium with humid air (Appendix A and Fig. 16 of the paper).
 
@@ -105,7 +106,7 @@ def capillary_state_in_humid_air(
     contact_angle_counterface : θ2, rad, 0 … π, batch shape
     area_correction : γ, dimensionless, 0 < γ ≤ 1, batch shape
     closure : P(u) from Gaussians (default) or from sharp gaps, see `gap_distribution`
-    branch : see `capillary_state_at_gap`
+    branch, count : see `capillary_state_at_gap`
 
     Returns
     -------
@@ -144,7 +145,7 @@ def capillary_state_in_humid_air(
         bridged = np.where(gap == 0, _NO_GAP, gap)
         state = capillary_state_at_gap(
             bridged, nominal_pressure, spectrum, skin, surface_tension_of_water(kelvin), contact_angle_skin,
-            contact_angle_counterface, area_correction, closure, branch,
+            contact_angle_counterface, area_correction, closure, branch, count,
         )  # fmt: skip
     shown = np.where(state.kelvin_gap == _NO_GAP, 0.0, state.kelvin_gap)[()]
     return replace(state, kelvin_gap=shown)

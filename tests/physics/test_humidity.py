@@ -84,6 +84,9 @@ def test_ends():
     np.testing.assert_array_equal(plastic.kelvin_gap, 0.0)
     np.testing.assert_allclose(plastic.wet_area, 0.0, atol=1e-8)
     assert plastic.relative_contact_area[0] == pytest.approx(state.relative_contact_area[1], rel=1e-9)
+    # and none in saturated air either, where the radius is infinite
+    assert kelvin_gap(np.inf, ANGLE, np.radians(102.0)) == 0.0
+    assert kelvin_gap(np.inf, ANGLE, 0.0) == np.inf
     assert np.isnan(in_air([-0.1, 1.2], layer(7e6)).wet_area).all()
 
 
