@@ -2,7 +2,7 @@
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_stress_variance
-from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area
+from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area, total_contact_area
 from skinbayes.contact.elliptic_contact import (
     EllipseFactors,
     HertzEllipse,
@@ -58,5 +58,6 @@ __all__ = [
     "sphere_contact",
     "stress_variance",
     "surface_response",
+    "total_contact_area",
     "validate_skin",
 ]

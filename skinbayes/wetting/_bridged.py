@@ -109,7 +109,7 @@ class Bridged(NamedTuple):
         found = np.where(possible, np.log(self.load), np.nan)[:, None] + np.zeros(films.shape)
         for rows, each in self.curves(start, separation, known, curve):
             # equal steps of z are short where the film matters; backwards, as the film falls along z
-            first = each.at(start[rows, None])[0]
+            first = each.place(start[rows, None])
             log_film, found[rows] = each.along(first * (1 - lobatto(count)))
             films[rows] = np.exp(log_film)
             films[rows, 0], films[rows, -1] = start[rows], separation[rows]

@@ -61,3 +61,12 @@ def clenshaw(parts: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         slope_one, slope_two = 2 * one + double * slope_one - slope_two, slope_one
         one, two = parts[:, j, None] + double * one - two, one
     return parts[:, 0, None] + t * one - two, one + t * slope_one - slope_two
+
+
+def series(parts: FloatArray, t: FloatArray) -> FloatArray:
+    """Values at t, shape ``(B, F)``, of n series with coefficients ``parts``, shape ``(B, K, n)``; shape ``(B, F, n)``."""
+    double = 2 * t[..., None]
+    one, two = np.zeros((2, *t.shape, parts.shape[-1]))
+    for j in range(parts.shape[1] - 1, 0, -1):
+        one, two = parts[:, j, None] + double * one - two, one
+    return np.asarray(parts[:, 0, None] + t[..., None] * one - two)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto
+from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, series
 from skinbayes.wetting._family import GapFamily, gap_family
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._roots import smallest_root
@@ -53,11 +53,17 @@ class Curve(NamedTuple):
 
     def along(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """ln film (m) and ln p (Pa) at z of shape ``(B, F)``, each of that shape."""
-        t = 2 * z / self.end[:, None] - 1
-        return clenshaw(self.parts[..., 0], t)[0], clenshaw(self.parts[..., 1], t)[0]
+        values = series(self.parts[..., :2], 2 * z / self.end[:, None] - 1)
+        return values[..., 0], values[..., 1]
 
     def at(self, film: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
         """z, and ``ln p, ln F, ln ū`` as far as they are known, at films (m) of shape ``(B, F)``, each of that shape."""
+        z = self.place(film)
+        values = series(self.parts[..., 1:], 2 * z / self.end[:, None] - 1)
+        return z, list(np.moveaxis(values, -1, 0))
+
+    def place(self, film: FloatArray) -> FloatArray:
+        """z at films (m) of shape ``(B, F)``, of that shape."""
         target = np.log(film)
         count = self.nodes.shape[1]
         # the film falls as z grows, apart from folds at nanometres, where the first crossing is taken; start on the chord
@@ -80,9 +86,7 @@ class Curve(NamedTuple):
             active = active & ~last
             if not active.any():
                 break
-        return (t + 1) / 2 * self.end[:, None], [
-            clenshaw(self.parts[..., i], t)[0] for i in range(1, self.parts.shape[-1])
-        ]
+        return np.asarray((t + 1) / 2 * self.end[:, None])
 
 
 def solve_curve(

@@ -12,8 +12,8 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
     LayeredSkin,
-    elastoplastic_contact_area,
     stress_variance,
+    total_contact_area,
 )
 from skinbayes.contact.gaps import CLOSURES
 from skinbayes.errors import InputError
@@ -22,7 +22,7 @@ from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._bridged import Bridged
 from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, values_between
 from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
-from skinbayes.wetting._mixture import upper_tail
+from skinbayes.wetting._uneven import uneven_average
 from skinbayes.wetting.bridge_table import BridgeTable
 from skinbayes.wetting.capillary import cosine_sum
 from skinbayes.wetting.humidity import softened_modulus
@@ -32,8 +32,6 @@ FILM_FLOOR = 1e-7
 
 _FILMS, _POINTS, _MODULI = 32, 256, 12
 _NO_SPREAD = 1e-12  # m
-_TERMS = 1 << 14  # treated at a time
-_FAR = 9.0  # widths of the spread beyond which a normal distribution has nothing left
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,36 +69,14 @@ class FilmContact:
         batch = np.broadcast_shapes(films.shape[:-1], self.dry_area.shape, width.shape)
         shape = (*batch, films.shape[-1])
         place, wide = (
-            np.broadcast_to(films, shape).reshape(-1),
-            np.broadcast_to(width[..., None], shape).reshape(-1),
+            np.broadcast_to(films, shape).reshape(-1, shape[-1]),
+            np.broadcast_to(width[..., None], shape).reshape(-1, shape[-1]),
         )
         edge, local = (
             np.broadcast_to(x, (*batch, x.shape[-1])).reshape(-1, x.shape[-1]) for x in (self.film, self.area)
         )
         dry = np.broadcast_to(self.dry_area, batch).reshape(-1)
-        # area is a sum of one step and of ramps, whose averages over a normal distribution are closed forms
-        grades = np.diff(local) / np.diff(edge)
-        turns = np.diff(grades, axis=-1, prepend=0.0, append=0.0)
-        jump = local[:, 0] - dry
-        member = np.repeat(np.arange(dry.size), shape[-1])
-        # far from the first and the last edge there is nothing to average
-        area, slope = (
-            np.where(place > edge[member, -1], local[member, -1], dry[member]),
-            np.zeros(place.shape),
-        )
-        near = (place > edge[member, 0] - _FAR * wide) & (place < edge[member, -1] + _FAR * wide)
-        todo = np.flatnonzero(near | ~np.isfinite(place + wide + edge[member, -1]))
-        step = max(1, _TERMS // edge.shape[-1])
-        for first in range(0, todo.size, step):
-            here = todo[first : first + step]
-            rows, broad = member[here], wide[here, None]
-            distance = (place[here, None] - edge[rows]) / broad
-            bell = np.exp(-0.5 * np.square(distance)) / np.sqrt(2 * np.pi)
-            below = upper_tail(np.abs(distance), bell)
-            below = np.where(distance > 0, 1 - below, below)
-            slope[here] = (turns[rows] * below).sum(axis=-1) + jump[rows] * bell[:, 0] / broad[:, 0]
-            ramps = (turns[rows] * (broad * (distance * below + bell))).sum(axis=-1)
-            area[here] = dry[rows] + jump[rows] * below[:, 0] + ramps
+        area, slope = uneven_average(edge, local, dry, place, wide)
         return area.reshape(shape), slope.reshape(shape)
 
 
@@ -199,7 +175,7 @@ def film_contact(
 
     with np.errstate(all="ignore"):
         pull = np.where(tension >= 0, tension, np.nan) * np.maximum(cosine_sum(first, second), 0.0)
-        surface, gamma = map_spectrum(spectrum, flat), flat(gamma) if gamma.ndim else gamma
+        surface, gamma = map_spectrum(spectrum, flat), flat(gamma) if gamma.size > 1 else gamma.reshape(())
         height = np.broadcast_to(rms_height(surface), (prod(batch),))
         load, pull, dry, limit = (flat(x) for x in (np.where(load > 0, load, np.nan), pull, dry, limit))
         flat_skin = map_skin(skin, flat)
@@ -254,7 +230,7 @@ def _log_area(source: GapSource, limit: FloatArray, pressure: FloatArray) -> Flo
     """ln A/A0 under pressures, Pa, of shape ``(B, F)`` with the yield stress ``limit``, Pa, of shape ``(B,)``."""
     variance = np.asarray(stress_variance(source.spectrum, source.skin))
     parts = (x[..., None] for x in (variance, limit, np.asarray(source.area_correction)))
-    return np.log(elastoplastic_contact_area(pressure, *parts).total)
+    return np.log(total_contact_area(pressure, *parts))
 
 
 def _hardened(

@@ -17,6 +17,7 @@ from skinbayes.contact import (
     elastoplastic_contact_area,
     relative_contact_area,
     stress_variance,
+    total_contact_area,
 )
 from skinbayes.contact.elastoplastic import _fourier, _images
 from skinbayes.roughness import named_surface
@@ -115,6 +116,22 @@ def test_both_parts_keep_their_relative_accuracy(ratio, spread):
         assert area.elastic == pytest.approx(elastic, rel=1e-12, abs=0)
     if plastic > 1e-250:
         assert area.plastic == pytest.approx(plastic, rel=1e-12, abs=0)
+    total = total_contact_area(ratio, spread * spread, 1.0, 1.0)
+    assert total == pytest.approx(elastic + plastic, rel=1e-12, abs=0)
+
+
+def test_both_parts_together_alone_are_the_sum_of_both():
+    rng = np.random.default_rng(2)
+    pressure, limit = np.exp(rng.uniform(0, 18, (2, 400)))
+    spread = np.exp(rng.uniform(-4, 2, 400)) * limit
+    gamma = rng.uniform(0.2, 1.0, 400)
+    pressure[:3], limit[3:6], spread[6] = (0.0, np.nan, -1.0), (np.inf, -1.0, 0.0), np.nan
+    arguments = pressure, np.square(spread), limit, gamma
+    both = total_contact_area(*arguments)
+    np.testing.assert_allclose(both, elastoplastic_contact_area(*arguments).total, rtol=1e-12)
+    assert np.isnan(both[[1, 2, 4, 5, 6]]).all() and np.isfinite(both[7:]).all()
+    for i in range(0, 400, 40):  # a batch and its rows
+        assert total_contact_area(*(x[i] for x in arguments)) == both[i] or np.isnan(both[i])
 
 
 def test_both_series_agree_where_both_converge():
