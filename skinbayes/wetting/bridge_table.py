@@ -2,7 +2,7 @@
 
 The bridges of a layered rough skin depend on a few groups only. Heights scale: a surface k times as high under k times the load
 has the same gaps, k times as wide; and so do moduli and loads. What is left is the stiffness of the layer over that of the
-tissue, the load over tissue and height, the pull, the thickness of the layer, and the shape of the spectrum. Those groups that
+tissue, the load over stiffness and height, the pull, the thickness of the layer, and the shape of the spectrum. Those groups that
 vary span a box, on whose Chebyshev nodes the bridges are solved.
 """
 
@@ -30,11 +30,10 @@ SURFACE_GROUPS = ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wav
 _TERMS = TERMS["gaussian"]
 _COUNTS = (2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 16, 20)
 _PLACES, _TRIALS = 9, 48
-_AIM, _WORST = (
-    2e-4,
-    4e-4,
-)  # error of p along one axis, and in the whole box; single solutions are rough to 1e-3
-_CUT, _CUTS = 0.1, 12  # by which a box is cut whose corners have no solution
+# error of p and of the flooded film along one axis, and in the whole box; single solutions are rough to 2e-4
+_AIM, _WORST = 3e-4, 6e-4
+_CUT, _CUTS = 0.05, 16  # by which a box is cut whose corners have no solution
+_TILT = 1 / 3  # exponent of E0/E1 in the load: skins whose pull runs away then lie beyond one value of it
 _WIDEN = 1e-9
 _BLOCK = 64  # skins solved at a time
 _PULL = 1e-5  # m; the pull varies linearly far below it
@@ -51,11 +50,11 @@ class BridgeTable:
     ----------
     low, high : of each group of `skin_groups`, dimensionless or ln of SI values
     counts : nodes of each group that varies, dimensionless
-    depth : how far the curves go, dimensionless: to ``d_K = 0.9 ū [depth ū/h_rms exp(−load)]^(−½)``
+    depth : how far the curves go, 1/m: to ``d_K = 0.9 ū [depth ū E1/p0]^(−½)``
     parts : Chebyshev coefficients along z of the logarithms of the film over the flooded one and of p/p0, and ln(ū/h_rms),
         each expanded in the groups, dimensionless, shape ``(nodes, 2 terms + 1)``
-    error : root mean square of the relative error of p at given films, at random places of the box; nan if not measured,
-        dimensionless
+    error : at random places of the box, root mean square of the relative error of p at given films, or largest relative error
+        of the flooded film, if that is larger; nan if not measured, dimensionless
 
     References
     ----------
@@ -84,9 +83,9 @@ class BridgeTable:
             t = 2 * (groups[name] - self.low[name]) / (self.high[name] - self.low[name]) - 1
             basis = polynomials(t, count)[0]
             weight = (weight[:, :, None] * basis[:, None, :]).reshape(pressure.size, -1)
-        # one product for each member: a product of all rows at once may round differently
-        found = (weight[:, None, :] @ self.parts)[:, 0, :]
-        return _curve_of(found, _end(self.depth, found[:, -1], groups["load"]), pressure, height)
+        # one product for each member, contiguous: a product of all rows at once may round differently
+        found = (np.ascontiguousarray(weight)[:, None, :] @ self.parts)[:, 0, :]
+        return _curve_of(found, _end(self.depth, found[:, -1], _pressing(groups)), pressure, height)
 
 
 def skin_groups(
@@ -99,8 +98,8 @@ def skin_groups(
 ) -> dict[str, FloatArray]:
     """Groups of parameters on which capillary bridges depend, up to scale (from Eqs. 3 to 7 of the paper).
 
-    ``stiffness = ln(E0/E1)``, ``load = ln[p0/(E1 h_rms)]``, ``pull = ln(1 + γ_w Σcos θ E1/(p0² 10 µm))``, ln of the thickness of
-    the layer and of the wavevectors; Hurst exponent, Poisson ratios and γ as they are. Lengths are in m.
+    ``stiffness = ln(E0/E1)``, ``load = ln[p0/(E1^⅔ E0^⅓ h_rms)]``, ``pull = ln(1 + γ_w Σcos θ E1/(p0² 10 µm))``, ln of the
+    thickness of the layer and of the wavevectors; Hurst exponent, Poisson ratios and γ as they are. Lengths are in m.
 
     Parameters
     ----------
@@ -126,12 +125,12 @@ def skin_groups(
     >>> arguments = (np.array([x]) for x in (6830.0, 0.0845, 22.4e-6))
     >>> groups = skin_groups(*arguments, named_surface("paper_reference"), skin, np.array(0.42))
     >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["pull"].round(3))
-    [5.858] [9.632] [1.531]
+    [5.858] [7.679] [1.531]
     """
     bulk = np.asarray(skin.young_modulus_bulk)
     groups = {
         "stiffness": np.log(skin.young_modulus_layer / bulk),
-        "load": np.log(pressure / (bulk * height)),
+        "load": np.log(pressure / (bulk * height)) - _TILT * np.log(skin.young_modulus_layer / bulk),
         "pull": np.log1p(pull * bulk / np.square(pressure) / _PULL),
         "layer_thickness": np.log(skin.layer_thickness),
         "poisson_ratio_layer": np.asarray(skin.poisson_ratio_layer),
@@ -159,21 +158,21 @@ def bridge_table(
     ----------
     low : lower end of each group of `skin_groups`, dimensionless or ln of SI values
     high : upper end of each group; equal to the lower one where it does not vary, dimensionless or ln of SI values
-    depth : h_rms exp(load) over the thinnest film that will be asked for, dimensionless
+    depth : p0/E1 over the thinnest film that will be asked for, 1/m
     spectrum : tabulated spectrum, C in m^4, if the surface is one; None is a self-affine one
     most : skins to solve at most, dimensionless
     progress : called with the number of skins solved and their total, dimensionless
 
     Returns
     -------
-    table : `BridgeTable`; without the softest and smoothest skins of the box if the pull runs away there; None if it needs more
-        skins than ``most`` or does not come to 4e-4 of the pressure
+    table : `BridgeTable`; without the skins of the largest load of the box if the pull runs away there; None if it needs more
+        skins than ``most`` or does not come to 6e-4 of the pressure
 
     Notes
     -----
     Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.error``; 99 % of them within five times
     that, the worst towards the flooded film, where the pull sets in. The solutions themselves are rough at the level of a few
-    1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 400 skins.
+    1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 600 skins.
 
     References
     ----------
@@ -188,23 +187,40 @@ def bridge_table(
     >>> same = (np.full(2, x) for x in (6830.0, 0.0845, 22.4e-6))
     >>> groups = skin_groups(*same, named_surface("paper_reference"), skins, np.array(0.42))
     >>> low, high = ({name: end(x) for name, x in groups.items()} for end in (np.min, np.max))
-    >>> table = bridge_table(low, high, 22.4e-6 * np.exp(low["load"]) / 1e-7)
+    >>> table = bridge_table(low, high, 6830.0 / 20e3 / 1e-7)
     >>> print(dict(table.counts), table.error < 1e-3)
-    {'stiffness': 3} True
+    {'stiffness': 2, 'load': 3} True
     """
     low, high = dict(low), dict(high)
     for _ in range(_CUTS):
-        if _solvable(low, high, depth, spectrum):
+        counts = _counts(low, high, depth, spectrum) if _solvable(low, high, depth, spectrum) else None
+        if counts is not None:
             break
-        # soft and smooth skin is where the pull runs away
-        low["stiffness"] += _CUT * (high["stiffness"] - low["stiffness"])
+        # the pull runs away under large loads
         high["load"] -= _CUT * (high["load"] - low["load"])
     else:
         return None
-    axes = [name for name in low if high[name] > low[name]]
+    rng = np.random.default_rng(0)
+    trial = {name: rng.uniform(low[name], high[name], _TRIALS) for name in counts}
+    sound = _solve({**_fields(low), **trial}, depth, spectrum)
+    while prod(counts.values()) <= most:
+        whole = _build(low, high, counts, depth, spectrum, progress)
+        if whole is None:
+            return None
+        error = _error(whole, trial, sound)
+        if error < _WORST:
+            return replace(whole, error=error)
+        counts = {name: count + 1 for name, count in counts.items()}
+    return None
+
+
+def _counts(
+    low: Mapping[str, float], high: Mapping[str, float], depth: float, spectrum: PowerSpectrum | None
+) -> dict[str, int] | None:
+    """Nodes along each group that varies, enough where the others are in the middle; None if no number is."""
     middle = {name: (low[name] + high[name]) / 2 for name in low}
     counts: dict[str, int] = {}
-    for name in axes:
+    for name in (name for name in low if high[name] > low[name]):
         first, last = ({**middle, name: ends[name]} for ends in (low, high))
         places = {name: np.linspace(low[name], high[name], _PLACES + 2)[1:-1]}
         sound = _solve({**_fields(middle), **places}, depth, spectrum)
@@ -215,18 +231,7 @@ def bridge_table(
         else:
             return None
         counts[name] = count
-    rng = np.random.default_rng(0)
-    trial = {name: rng.uniform(low[name], high[name], _TRIALS) for name in axes}
-    sound = _solve({**_fields(middle), **trial}, depth, spectrum)
-    while prod(counts.values()) <= most:
-        whole = _build(low, high, counts, depth, spectrum, progress)
-        if whole is None:
-            return None
-        error = _error(whole, trial, sound)
-        if error < _WORST:
-            return replace(whole, error=error)
-        counts = {name: count + 1 for name, count in counts.items()}
-    return None
+    return counts
 
 
 def _fields(values: Mapping[str, float]) -> dict[str, FloatArray]:
@@ -270,13 +275,19 @@ def _solvable(
     return bool(np.isfinite(_solve(corners, depth, spectrum)).all())
 
 
-def _end(depth: float, log_separation: FloatArray, load: FloatArray) -> FloatArray:
+def _pressing(groups: Groups) -> FloatArray:
+    """ln[p0/(E1 h_rms)]."""
+    return np.asarray(groups["load"] + _TILT * groups["stiffness"])
+
+
+def _end(depth: float, log_separation: FloatArray, pressing: FloatArray) -> FloatArray:
     """Largest z = ln(1 + d0/d_K) of the curves: films thin as the square of d_K/ū, so that it follows the root of ū."""
-    return np.asarray(np.log1p(REFERENCE / 0.9 * np.exp((np.log(depth) + log_separation - load) / 2)))
+    return np.asarray(np.log1p(REFERENCE / 0.9 * np.exp((np.log(depth) + log_separation - pressing) / 2)))
 
 
 def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
-    """Largest error of p, relative, at places of the box and all films; ``exact`` are the coefficients there."""
+    """Relative error of p, root mean square over places of the box and all films, or the largest of the flooded film, if that is
+    larger; ``exact`` are the coefficients there."""
     count = len(exact)
     groups = {n: np.broadcast_to(x, (count,)) for n, x in {**_fields(table.low), **places}.items()}
     one = np.ones(count)
@@ -287,7 +298,8 @@ def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
     film = np.exp(sound.along(z)[0])
     # a curve that is nan is as wrong as can be
     errors = np.nan_to_num(np.abs(curve.at(film)[1][0] - sound.at(film)[1][0]), nan=np.inf)
-    return float(np.sqrt(np.mean(np.square(errors))))
+    flooded = np.max(np.abs(curve.flooded() / sound.flooded() - 1))
+    return float(np.fmax(np.sqrt(np.mean(np.square(errors))), flooded))
 
 
 def _curve_of(found: FloatArray, end: FloatArray, pressure: FloatArray, height: FloatArray) -> Curve:
@@ -328,11 +340,12 @@ def _curves(
         given["poisson_ratio_bulk"],
         np.exp(given["layer_thickness"]),
     )
-    load = _BULK * _HEIGHT * np.exp(given["load"])
+    pressing = _pressing(given)
+    load = _BULK * _HEIGHT * np.exp(pressing)
     pull = np.expm1(given["pull"]) * _PULL * np.square(load) / _BULK
     gamma = np.ascontiguousarray(given["area_correction"])
     with np.errstate(all="ignore"):
         flooded = np.asarray(mean_separation(load[:, None], surface, skin, gamma))[:, 0]
         source = GapSource(surface, skin, gamma, "gaussian")
-        end = _end(depth, np.log(flooded / _HEIGHT), given["load"])
+        end = _end(depth, np.log(flooded / _HEIGHT), pressing)
         return solve_curve(source, load, pull, flooded, flooded / 10, end), load, flooded
