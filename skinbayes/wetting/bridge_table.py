@@ -50,7 +50,7 @@ class BridgeTable:
     ----------
     low, high : of each group of `skin_groups`, dimensionless or ln of SI values
     counts : nodes of each group that varies, dimensionless
-    depth : how far the curves go, 1/m: to ``d_K = 0.9 ū [depth ū E1/p0]^(−½)``
+    depth : how far the curves go, to ``d_K = 0.9 ū [depth ū E1/p0]^(−½)``, 1/m
     parts : Chebyshev coefficients along z of the logarithms of the film over the flooded one and of p/p0, and ln(ū/h_rms),
         each expanded in the groups, dimensionless, shape ``(nodes, 2 terms + 1)``
     error : at random places of the box, root mean square of the relative error of p at given films, or largest relative error
