@@ -10,6 +10,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
 from skinbayes.statistics.transforms import VectorTransform
 
@@ -18,6 +19,12 @@ if TYPE_CHECKING:
 
 CANDIDATES_PER_START = 20
 """Prior draws looked at for each start."""
+
+FOUND = 2.0
+"""Effective number of candidates under the whole likelihood below which the prior draws have not found the posterior."""
+
+DISPERSION = 0.25
+"""Power of the likelihood at which starts led towards the posterior are left: twice as wide as it."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +73,8 @@ class PosteriorTarget:
         """Positions to start from: prior draws, thinned towards the posterior but as dispersed as the draws allow.
 
         Of 20 prior draws for each start, ``count`` different ones are drawn with probability ∝ L^β; β ≤ 1 is as large as
-        it can be while the effective number of candidates stays at or above ``count``.
+        it can be while the effective number of candidates stays at or above ``count``. Where one candidate outweighs all the
+        others together, the starts are led on by `anneal`, until β is a quarter.
 
         Raises
         ------
@@ -85,22 +93,14 @@ class PosteriorTarget:
                 "the priors mostly cover values at which the forward model gives no prediction (see 'skinbayes check')"
             )
         position, weight = position[usable], weight[usable]
-        beta = _tempering(weight, count)
+        beta = largest_power(weight, count)
         # Gumbel top-k: sampling without replacement with probability ∝ exp(β·weight)
-        keys = beta * weight + rng.gumbel(size=weight.shape)
-        return position[np.argsort(-keys)[:count]]
+        chosen = np.argsort(-(beta * weight + rng.gumbel(size=weight.shape)))[:count]
+        if effective_number(weight) > FOUND:
+            return position[chosen]
 
+        def likelihood(place: FloatArray) -> FloatArray:
+            return self.problem.log_likelihood(self.transform.inverse(place))
 
-def _tempering(log_weight: FloatArray, count: int) -> float:
-    low, high = 0.0, 1.0
-    if _effective(log_weight) >= count:
-        return 1.0
-    for _ in range(40):
-        middle = (low + high) / 2
-        low, high = (middle, high) if _effective(middle * log_weight) >= count else (low, middle)
-    return low
-
-
-def _effective(log_weight: FloatArray) -> float:
-    weight = np.exp(log_weight - log_weight.max())
-    return float(weight.sum() ** 2 / (weight**2).sum())
+        only_prior = replace(self, use_likelihood=False).log_density
+        return anneal(position[chosen], weight[chosen], beta, DISPERSION, only_prior, likelihood, rng)
