@@ -11,7 +11,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.advance import Block
 from skinbayes.sampling.chains import Chains
-from skinbayes.sampling.moves import MoveFactory, default_moves
+from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
@@ -56,7 +56,7 @@ def run_ensembles(
     options: SamplerOptions,
     store: SampleStore | None = None,
     progress: Callable[[Progress], None] | None = None,
-    moves: MoveFactory = default_moves,
+    moves: MoveFactory | None = None,
 ) -> Chains:
     """Sample a target until the stopping rule is met or ``max_steps`` are made.
 
@@ -70,7 +70,7 @@ def run_ensembles(
     options : seed, sizes, when to stop, how to compute
     store : where steps are kept; a store that resumes gives the steps it holds
     progress : called at the beginning and after every block of steps
-    moves : builds the proposals
+    moves : builds the proposals; those that suit a costly target, or another, if omitted
 
     Returns
     -------
@@ -83,6 +83,7 @@ def run_ensembles(
     InputError
         If starts are impossible, or the store cannot be used (see :meth:`SampleStore.open`).
     """
+    moves = moves or moves_for(options.costly)
     rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
@@ -110,7 +111,7 @@ def run_ensembles(
 
 
 def draw_identity(
-    target: Target, options: SamplerOptions, moves: MoveFactory = default_moves
+    target: Target, options: SamplerOptions, moves: MoveFactory | None = None
 ) -> dict[str, Any]:
     """Everything the draws depend on; a stored run can only be continued with the same.
 
@@ -122,6 +123,7 @@ def draw_identity(
     -------
     values that can be written as JSON, under names that make sense in a message
     """
+    moves = moves or moves_for(options.costly)
     return {
         "model or data (fingerprint)": target.fingerprint,
         "coordinates": list(target.names),

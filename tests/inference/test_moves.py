@@ -5,11 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from sampling_targets import Banana, UnitGaussian
-from scipy.stats import gaussian_kde
+from scipy.stats import gaussian_kde, multivariate_t
 
 from skinbayes.sampling.convergence import autocorrelation_time
 from skinbayes.sampling.ensembles import run_ensembles
-from skinbayes.sampling.moves import default_moves, kernel_density_proposal
+from skinbayes.sampling.moves import (
+    default_moves,
+    few_walkers_moves,
+    kernel_density_proposal,
+    student_proposal,
+)
 from skinbayes.sampling.options import SamplerOptions
 
 LIMIT = 4.5
@@ -51,6 +56,17 @@ def test_default_moves_sample_known_targets(target, ess):
     assert largest_error(chains, target) < LIMIT
 
 
+@pytest.mark.parametrize(
+    ("target", "ess"),
+    [(UnitGaussian(2), 10_000), (UnitGaussian(5), 10_000), (UnitGaussian(10), 4_000), (Banana(2), 5_000)],
+    ids=["gaussian-2", "gaussian-5", "gaussian-10", "banana"],
+)
+def test_moves_for_few_walkers_sample_known_targets(target, ess):
+    chains = run_ensembles(target, SamplerOptions(seed=11, ess=ess, costly=True))
+    assert chains.converged and chains.positions.shape[2] == 64
+    assert largest_error(chains, target) < LIMIT
+
+
 def test_banana_moments():
     """x1 = z + bend·(x0² − 1) has mean 0, variance 1 + 2·bend², where z and x0 are standard normal."""
     chains = run_ensembles(Banana(2, bend=0.5), SamplerOptions(seed=3, ess=8_000))
@@ -81,14 +97,15 @@ def test_claimed_effective_sample_size_is_the_real_one(dimension):
     assert np.mean(ratios) == pytest.approx(1.0, abs=5 * np.sqrt(2.0 / (40 * dimension)))
 
 
-def test_a_flat_complement_falls_back_to_differential_evolution():
-    """If the other half lies in a plane there is no kernel density; the proposal then comes from its differences."""
-    kernel_density = default_moves()[1][0]
+@pytest.mark.parametrize("moves", [default_moves, few_walkers_moves])
+def test_a_flat_complement_falls_back_to_differential_evolution(moves):
+    """If the other half lies in a plane there is no density of it; the proposal then comes from its differences."""
+    learnt = moves()[1][0]
     rng = np.random.RandomState(5)
     sample = rng.normal(size=(8, 3))
     complement = rng.normal(size=(8, 3))
     complement[:, 2] = 1.0
-    proposal, factors = kernel_density.get_proposal(sample, [complement], np.random.RandomState(6))
+    proposal, factors = learnt.get_proposal(sample, [complement], np.random.RandomState(6))
     assert np.isfinite(proposal).all()
     assert np.array_equal(factors, np.zeros(8))  # symmetric
     assert np.array_equal(proposal[:, 2], sample[:, 2])  # differences lie in the plane
@@ -104,6 +121,24 @@ def test_kernel_density_is_the_one_of_scipy():
     assert factors == pytest.approx(independent.logpdf(sample.T) - independent.logpdf(proposal.T), abs=1e-10)
 
 
+def test_student_distribution_is_the_one_of_scipy():
+    rng = np.random.RandomState(5)
+    sample, complement = rng.normal(size=(64, 3)), rng.normal(size=(64, 3)) @ rng.normal(size=(3, 3))
+    proposal, factors = student_proposal(sample, complement, rng)
+    independent = multivariate_t(complement.mean(axis=0), 1.1 * np.cov(complement.T), df=5)
+    assert factors == pytest.approx(independent.logpdf(sample) - independent.logpdf(proposal), abs=1e-10)
+
+
+def test_student_proposals_follow_it():
+    """The covariance of a Student distribution with 5 degrees of freedom is 5/3 of the squared scale."""
+    rng = np.random.RandomState(5)
+    complement = 7.0 + rng.normal(size=(64, 3)) @ rng.normal(size=(3, 3))
+    proposal, _ = student_proposal(np.zeros((200_000, 3)), complement, rng)
+    expected = 1.1 * 5 / 3 * np.cov(complement.T)
+    assert np.cov(proposal.T) == pytest.approx(expected, rel=0.05, abs=0.05 * np.abs(expected).max())
+    assert proposal.mean(axis=0) == pytest.approx(complement.mean(axis=0), abs=0.02)
+
+
 def test_kernel_density_proposals_follow_it():
     """The covariance of the proposals is the one of the walkers, widened by Scott's bandwidth squared."""
     rng = np.random.RandomState(5)
@@ -116,7 +151,7 @@ def test_kernel_density_proposals_follow_it():
 def test_moves_take_all_randomness_from_the_generator_they_are_given():
     rng = np.random.RandomState(5)
     sample, complement = rng.normal(size=(64, 3)), rng.normal(size=(64, 3))
-    for move, _ in default_moves():
+    for move, _ in default_moves() + few_walkers_moves()[1:]:
         move.setup(sample)
         np.random.seed(1)  # noqa: NPY002
         first = move.get_proposal(sample, [complement], np.random.RandomState(6))
