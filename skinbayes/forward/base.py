@@ -55,6 +55,8 @@ class Profile:
     abscissa, ordinate : names of quantities in the vocabulary
     grid : abscissa values for given inputs, shape ``(K,)``, SI
     evaluate : ordinate for inputs that broadcast to ``(B,)`` at the grid, shape ``(B, K)``
+    needs : inputs without which there is no such curve
+    uniform : inputs that may not be a column of the rows: a curve at the value of one row would connect nothing
     """
 
     name: str
@@ -63,6 +65,8 @@ class Profile:
     ordinate: str
     grid: Callable[[Inputs, Tables], FloatArray]
     evaluate: Callable[[Inputs, Tables, FloatArray], FloatArray]
+    needs: tuple[str, ...] = ()
+    uniform: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

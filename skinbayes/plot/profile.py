@@ -33,7 +33,11 @@ if TYPE_CHECKING:
     from skinbayes.forward import Profile
     from skinbayes.problem import Problem
 
-TITLES = {"time": "Drying in time", "film_thickness": "Skin against the water film"}
+TITLES = {
+    "time": "Drying in time",
+    "film_thickness": "Skin against the water film",
+    "relative_humidity": "Skin in humid air",
+}
 """Titles of figures of several curves by their abscissa."""
 
 
@@ -62,7 +66,7 @@ def plot_profile(fit: Fit, abscissa: str | None = None) -> Figure:
     if not offered:
         return sentence_figure(fit, title, f"The forward model '{fit.problem.forward.name}' has no curves.")
     abscissa = abscissa or offered[0]
-    profiles = [profile for profile in fit.problem.model.profiles if profile.abscissa == abscissa]
+    profiles = [profile for profile in fit.problem.profiles if profile.abscissa == abscissa]
     if not profiles:
         return sentence_figure(
             fit, title, f"The model has no curve against {abscissa}; it has {', '.join(offered)}."
@@ -95,7 +99,7 @@ def plot_profile(fit: Fit, abscissa: str | None = None) -> Figure:
 
 def profile_abscissas(problem: Problem) -> list[str]:
     """Quantities against which the forward model offers curves, in its order."""
-    return list(dict.fromkeys(profile.abscissa for profile in problem.model.profiles))
+    return list(dict.fromkeys(profile.abscissa for profile in problem.profiles))
 
 
 def _panel(

@@ -110,7 +110,7 @@ def followed_profile(problem: Problem, middle: FloatArray) -> tuple[Profile, Flo
     That is the first one whose ordinate was observed and whose abscissa is an input that varies between rows, or is what the
     forward model makes of its inputs (viscosity times speed). None if there is no such curve.
     """
-    for profile in problem.model.profiles:
+    for profile in problem.profiles:
         if profile.ordinate in problem.observables:
             along = abscissa_of_rows(problem, profile, middle)
             if along is not None:

@@ -58,8 +58,8 @@ def scale_for(unit: str, *groups: FloatArray, typical: float | None = None) -> S
 
 
 def axis_scale(name: str, scale: Scale) -> Scale:
-    """The scale of an axis that shows a quantity: time runs evenly, whatever its range."""
-    return replace(scale, logarithmic=False) if name == "time" else scale
+    """The scale of an axis that shows a quantity: time and humidity run evenly, whatever their range."""
+    return replace(scale, logarithmic=False) if name in ("time", "relative_humidity") else scale
 
 
 def round_values(low: float, high: float, most: int = 4) -> list[float]:

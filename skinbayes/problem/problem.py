@@ -286,6 +286,17 @@ class Problem:
         batch, _ = self._batch(theta)
         return self._likelihood.draw_effects(batch, rng)
 
+    @property
+    def profiles(self) -> tuple[Profile, ...]:
+        """Curves that the forward model offers for the inputs of this problem."""
+        columns = set(self.conditions.values)
+        given = {entry.name for entry in self._plan} | columns
+        return tuple(
+            profile
+            for profile in self.model.profiles
+            if given.issuperset(profile.needs) and columns.isdisjoint(profile.uniform)
+        )
+
     def profile(self, profile: Profile, theta: FloatArray, row: int = 0) -> tuple[FloatArray, FloatArray]:
         """A curve of the forward model at the conditions of one row: abscissa ``(K,)`` and ordinate ``(B, K)``."""
         inputs = {

@@ -49,6 +49,11 @@ CURVES = {
         "The skin against the water film",
         "Drying runs from right to left: a thick film floods the skin, a thinner one pulls it together.",
     ),
+    "relative_humidity": (
+        "The skin in humid air",
+        "From left to right the air becomes more humid and the layer softer. Bridges of water pull soft skin together, until in "
+        "saturated air they flood the gap and let go.",
+    ),
     "speed_viscosity_product": (
         "Stribeck curve",
         "From left to right the liquid carries more of the load: friction falls as contact is lost, and rises again by the shear "
@@ -129,7 +134,7 @@ def _curves(problem: Problem) -> Iterator[Drawing]:
     """Curves of the forward model, a figure for each abscissa."""
     for abscissa in profile_abscissas(problem):
         heading, reading = CURVES.get(abscissa, (f"Curves against {spoken_name(abscissa)}", ""))
-        seen = {profile.ordinate for profile in problem.model.profiles if profile.abscissa == abscissa}
+        seen = {profile.ordinate for profile in problem.profiles if profile.abscissa == abscissa}
         dots = (
             " Scatter is not in them, so that dots may lie outside."
             if seen & set(problem.observables)
