@@ -166,6 +166,13 @@ _ALL = (
     _closed("relative_humidity", "RH", "1", "relative humidity", 1.0),
     Quantity("temperature", "T", "K", "temperature"),
     _closed("time", "t", "s", "time"),
+    Quantity(
+        "kelvin_radius",
+        "r_K",
+        "m",
+        "radius of curvature of water in equilibrium with humid air; inf is saturated air",
+        infinite_allowed=True,
+    ),
     Quantity("kelvin_gap", "d_K", "m", "largest gap that a capillary bridge spans"),
     _closed("capillary_pressure", "p_a", "Pa", "pull of the capillary bridges over nominal contact area"),
     _closed("wet_area", "A_wet/A0", "1", "area between the surfaces that is wet over nominal area", 1.0),
@@ -191,6 +198,20 @@ _ALL = (
     _closed("wet_plateau", "μ_wet", "1", "friction coefficient of flooded skin"),
     _closed("dry_friction", "μ_dry", "1", "friction coefficient of dry skin"),
     _closed("dry_time", "t_dry", "s", "time at which the film is gone"),
+    # humid air
+    Quantity(
+        "young_modulus_layer_wet", "E0_wet", "Pa", "Young's modulus of the stratum corneum in saturated air"
+    ),
+    Quantity(
+        "transition_humidity",
+        "RH_t",
+        "1",
+        "relative humidity at which ln E0 is half way between dry and wet",
+        0.0,
+        1.0,
+        upper_open=True,
+    ),
+    Quantity("transition_sharpness", "k_t", "1", "how abruptly the stratum corneum softens with humidity"),
     # people
     _closed("skin_hydration", "hydration", "1", "corneometer reading, arbitrary units"),
     # groups of data

@@ -38,9 +38,10 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
     problem = load_problem(model, settings=settings, conditions=conditions)
     theta = problem.prior_medians()
     prediction = problem.predict(theta)
-    bad = [name for name, values in prediction.items() if not (abs(values) < float("inf")).all()]
+    sound = {name: _has_value(name, values) for name, values in prediction.items()}
+    bad = [name for name, values in sound.items() if not values.all()]
     if bad:
-        row = int((~(abs(prediction[bad[0]]) < float("inf"))).nonzero()[0][0]) + 1
+        row = int((~sound[bad[0]]).nonzero()[0][0]) + 1
         why = " ".join(problem.explain(theta)) or "these inputs lie outside the forward model's range"
         raise InputError(f"{model}: {bad[0]} has no finite value at row {row}: {why}")
     for note in problem.explain(theta):
@@ -56,6 +57,14 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
         })  # fmt: skip
         return
     _print(problem, theta, columns, prediction)
+
+
+def _has_value(name: str, values: Any) -> Any:
+    """Where a prediction is a number, or infinite where that means something (the Kelvin radius of saturated air)."""
+    from skinbayes.vocabulary import QUANTITIES
+
+    infinite = QUANTITIES[name].infinite_allowed
+    return (abs(values) < float("inf")) | (infinite & (values == float("inf")))
 
 
 def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[str, Any]) -> None:

@@ -157,7 +157,7 @@ def humid_table(
     most: int = 250_000,
     progress: Callable[[int, int], None] | None = None,
 ) -> HumidTable | None:
-    """Compute the share of bridged gaps on a grid of groups, for many skins to be interpolated (Appendix A of the paper).
+    """Compute the share of bridged gaps on a grid of groups, for many skins to be interpolated (Eq. 7, Appendix A of the paper).
 
     Parameters
     ----------

@@ -1,0 +1,204 @@
+"""Forward model ``humid-air``: contact and friction of skin in equilibrium with humid air (Appendix A, Figs. 16 and 17).
+
+Bridges of a few nanometres pull the skin together, and the modulus of the layer follows the humidity. The pull is that of
+elastic gaps. The contact area is then elastoplastic under load and pull together, as in ``drying``: dry stiff skin yields, and
+without that the friction of dry skin would come out a hundred times too small. Where contacts have yielded the gaps beside them
+are not the elastic ones, but there the pull is a few percent of the load. With an infinite yield stress, the default, the area
+is the elastic one of Fig. 16.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import FloatArray
+from skinbayes.contact import elastoplastic_contact_area, stress_variance
+from skinbayes.forward.alike_rows import along_rows
+from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.capillary_film import Closure
+from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, skin_of, spectrum_of
+from skinbayes.forward.humid_air_inputs import (
+    AIR_INPUTS,
+    CURVE_INPUTS,
+    HUMID_AIR_DEFAULTS,
+    HUMID_AIR_INPUTS,
+    kelvin_gap_of,
+    kelvin_radius_of,
+    validate_humid_air,
+    with_modulus,
+)
+from skinbayes.forward.humid_air_table import TabulatedPull, prepared_humid_air
+from skinbayes.friction import friction_coefficient
+from skinbayes.wetting import MOLECULE_DIAMETER, capillary_state_in_humid_air, is_below_molecule
+
+OBSERVABLES = ("friction_coefficient", "relative_contact_area", "kelvin_radius", "capillary_pressure")
+
+STRONG_PULL = 0.5
+"""Pull over load from which the two closures of the gaps differ by more than about 20 % in the contact area."""
+
+FLAGS = {
+    "strong_bridges": f"bridges pull with more than {STRONG_PULL:g} of the load; how hard hangs on the closure of the gaps "
+    "('humid-air' or 'humid-air-delta'), so rely neither on the value nor on the humidity at which contact is lost",
+    "below_molecule": f"bridges span less than {MOLECULE_DIAMETER * 1e9:g} nm, the size of a water molecule, and are no more "
+    "than a figure of speech",
+}
+"""Flags and what they say."""
+
+_PRESSES = {
+    *AIR_INPUTS,
+    *ROUGHNESS_INPUTS,
+    "young_modulus_layer",
+    "young_modulus_bulk",
+    "layer_thickness",
+    "poisson_ratio_layer",
+    "poisson_ratio_bulk",
+    "area_correction",
+    "nominal_pressure",
+}
+"""What the pull depends on."""
+
+
+def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
+    state = capillary_state_in_humid_air(
+        humidity,
+        inputs["temperature"],
+        inputs["nominal_pressure"],
+        spectrum_of(inputs, tables),
+        skin_of(inputs),
+        inputs["contact_angle_skin"],
+        inputs["contact_angle_counterface"],
+        inputs["area_correction"],
+        closure,
+        count=False,
+    )
+    return {"capillary_pressure": np.asarray(state.capillary_pressure)}
+
+
+def _pull(known: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None) -> FloatArray:
+    """Pull of the bridges over the nominal area [Pa], shape ``(B, N)``, of inputs with the modulus of each row."""
+
+    def solved(inputs: Inputs) -> FloatArray:
+        pressing = {name: value for name, value in inputs.items() if name in _PRESSES}
+        found = along_rows(pressing, "relative_humidity", partial(_solved, tables=tables, closure=closure))
+        return found["capillary_pressure"]
+
+    return solved(known) if table is None else table.pull(known, tables, solved)
+
+
+def _evaluate(
+    inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None = None
+) -> dict[str, FloatArray]:
+    load = nominal_pressure_of(inputs)
+    known = {**with_modulus(inputs), "nominal_pressure": load}
+    pull = _pull(known, tables, closure, table)
+    variance = stress_variance(spectrum_of(known, tables), skin_of(known))
+    area = elastoplastic_contact_area(load + pull, variance, known["yield_stress"], known["area_correction"])
+    return {
+        "friction_coefficient": np.asarray(
+            friction_coefficient(known["frictional_shear_stress"], area.total, load)
+        ),
+        "relative_contact_area": area.total,
+        "kelvin_radius": kelvin_radius_of(known),
+        "capillary_pressure": pull,
+    }
+
+
+def _flags(
+    inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None = None
+) -> dict[str, NDArray[np.bool_]]:
+    pull = _evaluate(inputs, tables, closure, table)["capillary_pressure"]
+    gap = kelvin_gap_of(inputs)
+    below = (is_below_molecule(gap) > 0) & (gap > 0)
+    return {
+        "strong_bridges": pull > STRONG_PULL * nominal_pressure_of(inputs),
+        "below_molecule": np.broadcast_to(below, pull.shape),
+    }
+
+
+def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
+    """Where predictions are doubtful."""
+    found = _flags(inputs, tables, closure)
+    counts = {name: (int(np.count_nonzero(marked)), marked.size) for name, marked in found.items()}
+    return [f"{n} of {total} rows: {FLAGS[name]}." for name, (n, total) in counts.items() if n]
+
+
+def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
+    """Crowded towards saturated air, where the bridges grow from nanometres to flood the gap."""
+    return np.concatenate([np.linspace(0.04, 0.96, 47), [0.97, 0.98, 0.985, 0.99, 0.995, 0.998, 1.0]])
+
+
+def _profile(
+    inputs: Inputs, tables: Tables, humidity: FloatArray, observable: str, closure: Closure
+) -> FloatArray:
+    column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
+    return _evaluate({**column, "relative_humidity": humidity[np.newaxis]}, tables, closure)[observable]
+
+
+def _modulus(inputs: Inputs, tables: Tables, humidity: FloatArray) -> FloatArray:
+    column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
+    return with_modulus({**column, "relative_humidity": humidity})["young_modulus_layer"]
+
+
+def _profiles(closure: Closure) -> tuple[Profile, ...]:
+    """Friction, contact area (Fig. 16) and modulus (Fig. 17) against humidity, one below the other."""
+    titles = {
+        "friction_coefficient": "Friction against relative humidity",
+        "relative_contact_area": "Contact area against relative humidity",
+    }
+    predicted = (
+        Profile(
+            name=f"{observable}_against_humidity",
+            title=title,
+            abscissa="relative_humidity",
+            ordinate=observable,
+            grid=_grid,
+            evaluate=partial(_profile, observable=observable, closure=closure),
+            uniform=("young_modulus_layer",),
+        )
+        for observable, title in titles.items()
+    )
+    modulus = Profile(
+        name="young_modulus_against_humidity",
+        title="Modulus of the stratum corneum against relative humidity",
+        abscissa="relative_humidity",
+        ordinate="young_modulus_layer",
+        grid=_grid,
+        evaluate=_modulus,
+        needs=CURVE_INPUTS,
+    )
+    return (*predicted, modulus)
+
+
+def humid_air_model(name: str, summary: str, closure: Closure) -> ForwardModel:
+    """Return the forward model with one of the closures of the gap distribution."""
+    model = ForwardModel(
+        name=name,
+        summary=summary,
+        observables=OBSERVABLES,
+        required=HUMID_AIR_INPUTS,
+        optional=HUMID_AIR_DEFAULTS,
+        costly=True,
+        evaluate=partial(_evaluate, closure=closure),
+        validate=validate_humid_air,
+        explain=partial(_explain, closure=closure),
+        flags=partial(_flags, closure=closure),
+        flag_meanings=FLAGS,
+        derived=pressure_and_slope,
+        derived_names=("nominal_pressure", "rms_slope"),
+        blocks=("rms_slope",),
+        profiles=_profiles(closure),
+    )
+    return (
+        replace(model, prepare=partial(prepared_humid_air, model=model)) if closure == "gaussian" else model
+    )
+
+
+MODEL = humid_air_model(
+    "humid-air",
+    "contact and friction of skin in equilibrium with humid air, drawn together by bridges of nanometres, against humidity",
+    "gaussian",
+)

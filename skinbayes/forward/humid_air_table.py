@@ -1,0 +1,153 @@
+"""A table of bridged gaps over the priors of a model of skin in humid air, so that a row costs an interpolation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
+from typing import cast
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Progress, Ranges, Tables
+from skinbayes.forward.contact_inputs import (
+    PRESSURE_ALTERNATIVES,
+    SKIN_INPUTS,
+    nominal_pressure_of,
+    skin_of,
+    spectrum_of,
+)
+from skinbayes.forward.humid_air_inputs import AIR_INPUTS, kelvin_gap_of, pull_strength_of
+from skinbayes.roughness import rms_height
+from skinbayes.wetting import HumidTable, humid_groups, humid_table
+
+_ENTERS = {
+    *AIR_INPUTS,
+    *ROUGHNESS_INPUTS,
+    *SKIN_INPUTS,
+    "poisson_ratio_layer",
+    "poisson_ratio_bulk",
+    "area_correction",
+    *(name for names in PRESSURE_ALTERNATIVES for name in names),
+}
+_SHAPE = (*ROUGHNESS_INPUTS[1:], "poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+"""What the table does not interpolate in."""
+
+_DRIEST, _WET, _WETTEST = 0.04, 0.998, 0.9999
+"""Humidities that the table always reaches, as curves are drawn between them, and the largest that it ever does."""
+
+_CORNERS = 12  # inputs that vary, at most
+
+
+@dataclass(frozen=True, eq=False)
+class TabulatedPull:
+    """Pull of bridges from a table of the gaps that they span.
+
+    Attributes
+    ----------
+    table : of skins that differ in height, moduli, thickness and load only
+    shape : name to value of what is the same for all of them
+    """
+
+    table: HumidTable
+    shape: dict[str, float]
+
+    def pull(self, inputs: Inputs, tables: Tables, solved: Callable[[Inputs], FloatArray]) -> FloatArray:
+        """Pull [Pa], shape ``(B, N)``, of inputs that broadcast to it; by ``solved`` where the table does not reach."""
+        gap, strength = kelvin_gap_of(inputs), pull_strength_of(inputs)
+        height = rms_height(spectrum_of(inputs, tables))
+        load, skin = inputs["nominal_pressure"], skin_of(inputs)
+        same = np.logical_and.reduce([inputs[name] == value for name, value in self.shape.items()])
+        parts = (
+            gap,
+            strength,
+            height,
+            load,
+            same,
+            skin.young_modulus_layer,
+            skin.young_modulus_bulk,
+            skin.layer_thickness,
+        )
+        shape = np.broadcast_shapes(*(np.shape(part) for part in parts))
+        gap, strength, height, load, same, layer, bulk, thickness = (
+            np.broadcast_to(part, shape).reshape(-1) for part in parts
+        )
+        flat = replace(skin, young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=thickness)
+        # neither without bridges nor in a flooded gap does anything pull
+        bridged = (gap > 0) & np.isfinite(gap)
+        with np.errstate(all="ignore"):
+            groups = humid_groups(load, np.where(bridged, gap, height), height, flat)
+        inside = same & self.table.covers(groups, strength)
+        rows = np.flatnonzero(bridged & inside)
+        found = np.where(bridged | np.isnan(gap), np.nan, 0.0)
+        ratio = self.table.log_pressure_ratio(
+            {name: value[rows] for name, value in groups.items()}, strength[rows]
+        )
+        found[rows] = load[rows] * np.expm1(ratio)
+        found = found.reshape(shape)
+        if (missing := (bridged & ~inside).reshape(shape)).any():
+            few = missing.any(axis=1)
+            some = {name: value[few] if len(value) > 1 else value for name, value in inputs.items()}
+            found[few] = np.where(missing[few], solved(some), found[few])
+        return found
+
+
+def pull_over(
+    ranges: Ranges, optional: dict[str, float], tables: Tables, progress: Progress | None
+) -> TabulatedPull | None:
+    """Return the pull of bridges for all skins within ``ranges``, or None if they differ in too much.
+
+    Parameters
+    ----------
+    ranges : input to its smallest and largest value, SI
+    optional : defaults of inputs that are not in ``ranges``, SI
+    tables : spectrum, if it is measured
+    progress : called with the number of skins computed and their total
+    """
+    known = {**{name: (value, value) for name, value in optional.items()}, **ranges}
+    if "young_modulus_layer" not in known:
+        moduli = (*known["young_modulus_layer_dry"], *known["young_modulus_layer_wet"])
+        known["young_modulus_layer"] = (min(moduli), max(moduli))
+    shape = {name: known[name][0] for name in _SHAPE if name in known}
+    if any(known[name][1] > value for name, value in shape.items()):
+        return None
+    low, high = known["relative_humidity"]
+    known["relative_humidity"] = (min(low, _DRIEST), min(max(high, _WET), _WETTEST))
+    ends = {name: known[name] for name in _ENTERS if name in known}
+    if sum(high > low for low, high in ends.values()) > _CORNERS:
+        return None
+    corners = np.array(list(product(*(sorted({low, high}) for low, high in ends.values())))).T
+    inputs: dict[str, FloatArray] = dict(zip(ends, corners, strict=True))
+    gap, strength = kelvin_gap_of(inputs), pull_strength_of(inputs)
+    bridged = gap > 0
+    if not bridged.any():
+        return None
+    spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
+    height = np.broadcast_to(rms_height(spectrum), gap.shape)
+    groups = humid_groups(nominal_pressure_of(inputs), np.where(bridged, gap, np.nan), height, skin)
+    low_ends = {name: float(np.nanmin(value)) for name, value in groups.items()}
+    high_ends = {name: float(np.nanmax(value)) for name, value in groups.items()}
+    high_ends["load"] = float(np.max(groups["load"] + np.log1p(strength)))
+    one = {name: value[0] for name, value in inputs.items()}
+    table = humid_table(
+        low_ends, high_ends, spectrum_of(one, tables), skin_of(one), one["area_correction"], progress=progress
+    )
+    return None if table is None else TabulatedPull(table, shape)
+
+
+def prepared_humid_air(
+    ranges: Ranges, tables: Tables, progress: Progress | None, cores: int, model: ForwardModel
+) -> ForwardModel:
+    """Return a model of skin in humid air whose functions take a ``table`` with the table for ``ranges``, if there is one."""
+    table = pull_over(ranges, dict(model.optional), tables, progress)
+    if table is None:
+        return model
+    return replace(
+        model,
+        evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),
+        flags=partial(cast("partial[dict[str, np.typing.NDArray[np.bool_]]]", model.flags), table=table),
+        prepare=None,
+        accuracy="pressure of bridged skin interpolated to 4e-4, or 2e-3 where bridges pull hard (root mean square)",
+    )
