@@ -152,6 +152,8 @@ def freedoms(found: Sensitivities, scaled: FloatArray, columns: IntArray) -> tup
         relative = np.array([found.logarithmic[columns[i]] for i in moved])
         steps = (vector * found.prior_spread[columns])[:, moved]
         largest = np.abs(steps[:, relative] if relative.any() else steps).max(axis=1, keepdims=True)
+        # a member of the batch that does not move here has no proportion
+        steps, largest = (x[largest[:, 0] > 0] for x in (steps, largest))
         steps = (
             steps / largest * (np.log(1.1) if relative.any() else 0.1 * found.prior_spread[columns[moved[0]]])
         )

@@ -40,7 +40,8 @@ def power(name: str, low: float, value: float, high: float, exact: float | None)
         return f"{name}^({exact * denominator:.0f}/{denominator})"
     if high - low < 0.05 * max(1.0, abs(value)):
         return f"{name}^{value:.2g}"
-    return f"{name}^({low:.2g} to {high:.2g})"
+    # ends to two decimals; adding 0 turns -0 into 0
+    return f"{name}^({round(low, 2) + 0.0:.2g} to {round(high, 2) + 0.0:.2g})"
 
 
 def product(

@@ -9,13 +9,16 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.diagnose import ridges
-from skinbayes.plot.numbers import number
+from skinbayes.plot.numbers import number, percent
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 PLAIN = 0.05
 """An exponent so close to one is written as one."""
+
+SMALL = 1.15
+"""Ratios below are said as percentages: a factor of 1.0 says nothing."""
 
 
 @dataclass(frozen=True)
@@ -78,12 +81,17 @@ def ridge_sentences(fit: Fit) -> list[str]:
         if ridge.factor is None or ridge.factors_alone is None:
             said.append(f"{start}.")
             continue
-        one, two = (number(factor, 2) for factor in ridge.factors_alone)
+        one, two = (_within(factor) for factor in ridge.factors_alone)
         said.append(
-            f"{start}: {ridge.combination} is known within a factor of {number(ridge.factor, 2)}, from end to end of its 90 % "
-            f"interval; alone, {first} is known only within a factor of {one} and {second} within {two}."
+            f"{start}: {ridge.combination} is known within {_within(ridge.factor)}, from end to end of its 90 % "
+            f"interval; alone, {first} is known only within {one} and {second} within {two}."
         )
     return said
+
+
+def _within(factor: float) -> str:
+    """How far apart two ends are whose ratio is ``factor``, as people say it."""
+    return percent(factor - 1) if factor < SMALL else f"a factor of {number(factor, 2)}"
 
 
 def _factor(logarithm: FloatArray) -> float:

@@ -188,3 +188,12 @@ def test_looking_at_a_series_before_sampling(tmp_path: Path) -> None:
     flat = (TIMES > 40) & (TIMES < 530)
     np.testing.assert_allclose(np.interp(TIMES[flat], time, friction[0]), predicted[flat], rtol=0.02)
     assert time[0] < 30 and time[-1] > 550
+
+
+def test_what_a_series_determines_is_found_without_a_word_from_numpy(tmp_path: Path) -> None:
+    # some directions move for some draws of the prior only
+    free = {name: text for name, text in LINES.items() if name not in ("hardening_film", "surface_tension")}
+    problem = model(tmp_path, {**free, "frictional_shear_stress": '{ loguniform = ["0.5 MPa", "500 MPa"] }'})
+    said = " ".join(problem.check().sentences())
+    assert "frictional_shear_stress / yield_stress" in said
+    assert "nan" not in said
