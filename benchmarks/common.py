@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
+import resource
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Sequence
 from math import log
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
 
 COUNT = 64
 """Parameter vectors in a batch: half of an ensemble of 128 walkers."""
@@ -50,6 +58,32 @@ def best_time(
             function()
         times.append((clock() - start) / calls)
     return min(times)
+
+
+def timed_fit(arguments: Sequence[str]) -> tuple[dict[str, float], dict[str, Any]]:
+    """Run ``skinbayes fit ARGUMENTS --json`` as a process of its own.
+
+    Returns
+    -------
+    wall and CPU seconds (without those of workers), smallest effective sample size, evaluations, CPU seconds per effective
+    sample; and what the command reports
+    """
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    command = [sys.executable, "-c", "from skinbayes.cli import main; main()", "fit", *arguments, "--json"]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    began = time.perf_counter()
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": path}
+    )
+    wall = time.perf_counter() - began
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    found = json.loads(done.stdout)
+    size = min(parameter["ess_bulk"] for parameter in found["parameters"].values())
+    return {
+        "wall_seconds": wall, "cpu_seconds": cpu, "min_ess": size, "evaluations": found["log_likelihood_evaluations"],
+        "cpu_seconds_per_effective_sample": cpu / size,
+    }, found  # fmt: skip
 
 
 def report(

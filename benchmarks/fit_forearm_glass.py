@@ -19,10 +19,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import resource
-import subprocess
-import sys
 import tempfile
 import time
 from math import erf, exp, inf, log, pi, sqrt
@@ -30,8 +26,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common import timed_fit
 
-ROOT = Path(__file__).resolve().parents[1]
 WALKERS = 32
 LOAD, RADIUS = 0.5, 8e-3
 OBSERVED = {"dry": 0.3, "wet": 1.4}
@@ -144,24 +140,9 @@ def plain_script(steps: int) -> dict[str, dict[str, float]]:
 
 def whole_fit() -> dict[str, float]:
     """Run the command and read what it reports."""
-    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with tempfile.TemporaryDirectory() as folder:
-        began = time.perf_counter()
-        done = subprocess.run(
-            [sys.executable, "-c", "from skinbayes.cli import main; main()", "fit", "forearm-glass", "--seed", "1",
-             "--json", "-o", str(Path(folder) / "run")],
-            capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": path},
-        )  # fmt: skip
-        wall = time.perf_counter() - began
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    report = json.loads(done.stdout)
-    size = min(parameter["ess_bulk"] for parameter in report["parameters"].values())
-    return {
-        "wall_seconds": wall, "cpu_seconds": cpu, "min_ess": size, "converged": report["converged"],
-        "evaluations": report["log_likelihood_evaluations"], "cpu_seconds_per_effective_sample": cpu / size,
-    }  # fmt: skip
+        found, report = timed_fit(["forearm-glass", "--seed", "1", "-o", str(Path(folder) / "run")])
+    return {**found, "converged": report["converged"]}
 
 
 def sampling_only() -> dict[str, float]:

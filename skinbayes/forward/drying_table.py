@@ -4,34 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from itertools import product
 from typing import cast
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Progress, Ranges, Tables
+from skinbayes.forward.base import ForwardModel, Progress, Ranges, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS
-from skinbayes.forward.contact_inputs import (
-    PRESSURE_ALTERNATIVES,
-    SKIN_INPUTS,
-    nominal_pressure_of,
-    skin_of,
-    spectrum_of,
-)
+from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
+from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.wetting import BridgeTable, bridge_table, skin_groups
-
-_ENTERS = {
-    *SKIN_INPUTS,
-    *WATER_INPUTS,
-    *ROUGHNESS_INPUTS,
-    "poisson_ratio_layer",
-    "poisson_ratio_bulk",
-    "area_correction",
-    *(name for names in PRESSURE_ALTERNATIVES for name in names),
-}
-_CORNERS = 12  # inputs that vary, at most
 
 
 def table_over(
@@ -46,17 +29,15 @@ def table_over(
     tables : spectrum, if it is measured
     progress : called with the number of skins solved and their total
     """
-    known = {**{name: (value, value) for name, value in optional.items()}, **ranges}
+    known = known_ranges(ranges, optional)
     if not isinstance(tables.spectrum, TabulatedSpectrum | None):
         return None
-    ends = {name: known[name] for name in _ENTERS if name in known}
     if "hardening_film" in ranges:
         moduli = (*known["young_modulus_layer"], *known["young_modulus_layer_dry"])
-        ends["young_modulus_layer"] = (min(moduli), max(moduli))
-    if sum(high > low for low, high in ends.values()) > _CORNERS:
+        known["young_modulus_layer"] = (min(moduli), max(moduli))
+    inputs = corners(known, (*WATER_INPUTS, *CONTACT_INPUTS))
+    if inputs is None:
         return None
-    corners = np.array(list(product(*(sorted({low, high}) for low, high in ends.values())))).T
-    inputs: dict[str, FloatArray] = dict(zip(ends, corners, strict=True))
     spectrum, skin, load = spectrum_of(inputs, tables), skin_of(inputs), nominal_pressure_of(inputs)
     wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
     pull = inputs["surface_tension"] * np.maximum(wetting, 0.0)

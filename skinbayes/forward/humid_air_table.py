@@ -5,40 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import product
 from typing import cast
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Progress, Ranges, Tables
-from skinbayes.forward.contact_inputs import (
-    PRESSURE_ALTERNATIVES,
-    SKIN_INPUTS,
-    nominal_pressure_of,
-    skin_of,
-    spectrum_of,
-)
+from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
+from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.forward.humid_air_inputs import AIR_INPUTS, kelvin_gap_of, pull_strength_of
 from skinbayes.roughness import rms_height
 from skinbayes.wetting import HumidTable, humid_groups, humid_table
 
-_ENTERS = {
-    *AIR_INPUTS,
-    *ROUGHNESS_INPUTS,
-    *SKIN_INPUTS,
-    "poisson_ratio_layer",
-    "poisson_ratio_bulk",
-    "area_correction",
-    *(name for names in PRESSURE_ALTERNATIVES for name in names),
-}
 _SHAPE = (*ROUGHNESS_INPUTS[1:], "poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
 """What the table does not interpolate in."""
 
 _DRIEST, _WET, _WETTEST = 0.04, 0.998, 0.9999
 """Humidities that the table always reaches, as curves are drawn between them, and the largest that it ever does."""
-
-_CORNERS = 12  # inputs that vary, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +89,7 @@ def pull_over(
     tables : spectrum, if it is measured
     progress : called with the number of skins computed and their total
     """
-    known = {**{name: (value, value) for name, value in optional.items()}, **ranges}
+    known = known_ranges(ranges, optional)
     if "young_modulus_layer" not in known:
         moduli = (*known["young_modulus_layer_dry"], *known["young_modulus_layer_wet"])
         known["young_modulus_layer"] = (min(moduli), max(moduli))
@@ -115,11 +98,9 @@ def pull_over(
         return None
     low, high = known["relative_humidity"]
     known["relative_humidity"] = (min(low, _DRIEST), min(max(high, _WET), _WETTEST))
-    ends = {name: known[name] for name in _ENTERS if name in known}
-    if sum(high > low for low, high in ends.values()) > _CORNERS:
+    inputs = corners(known, (*AIR_INPUTS, *CONTACT_INPUTS))
+    if inputs is None:
         return None
-    corners = np.array(list(product(*(sorted({low, high}) for low, high in ends.values())))).T
-    inputs: dict[str, FloatArray] = dict(zip(ends, corners, strict=True))
     gap, strength = kelvin_gap_of(inputs), pull_strength_of(inputs)
     bridged = gap > 0
     if not bridged.any():
