@@ -12,7 +12,8 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.friction import friction_coefficient
 from skinbayes.wetting.film_contact import FilmContact
 
-_SEARCH, _HALVINGS = 192, 44
+_SEARCH, _STEPS = 192, 60
+_CLOSE = 1e-13  # of the bracket; a step that short is the last
 _NO_SPREAD = 1e-12  # m
 _NO_PEAK = 1e-6  # height of a peak over the wet plateau, relative, below which there is none
 
@@ -223,10 +224,29 @@ def drying_features(
 def _falling_root(
     function: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
 ) -> FloatArray:
-    """Where a function falls through zero between ``low`` and ``high``, by bisection; each member on its own."""
+    """Where a function falls through zero between ``low`` and ``high``; each member on its own.
+
+    False position, the end that stays halved (Illinois), every fourth step a bisection. Without a change of sign the root is the
+    end towards which the function points, where the function is nan it is nan.
+    """
     low, high = low.copy(), high.copy()
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        positive = function(middle) > 0
-        low, high = np.where(positive, middle, low), np.where(positive, high, middle)
-    return np.asarray((low + high) / 2 + 0.0 * function(low))
+    left, right = function(low), function(high)
+    close = _CLOSE * (high - low)
+    root = np.where(left > 0, high, low) + 0.0 * (left + right)
+    active = (left > 0) & (right <= 0)
+    stayed = np.zeros(low.shape, dtype=np.int8)  # which end stayed in the step before
+    for step in range(_STEPS):
+        if not active.any():
+            break
+        share = 0.5 if step % 4 == 3 else left / (left - right)
+        place = np.where(active, low + share * (high - low), root)
+        value = function(place)
+        root = np.where(active, place, root)
+        active &= (value != 0) & (np.minimum(place - low, high - place) > close)
+        up, down = active & (value > 0), active & ~(value > 0)
+        right = np.where(up & (stayed > 0), right / 2, right)
+        left = np.where(down & (stayed < 0), left / 2, left)
+        low, left = np.where(up, place, low), np.where(up, value, left)
+        high, right = np.where(down, place, high), np.where(down, value, right)
+        stayed = np.where(up, 1, np.where(down, -1, stayed)).astype(np.int8)
+    return root

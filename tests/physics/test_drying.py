@@ -21,6 +21,7 @@ from skinbayes.wetting import (
     evaporation_rate_from_pressures,
     film_contact,
 )
+from skinbayes.wetting.drying import _falling_root
 
 SURFACE = named_surface("paper_reference")
 WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
@@ -166,6 +167,22 @@ def test_features_change_smoothly():
     for value in (features.peak_time, features.peak_friction, features.peak_width, features.wet_plateau):
         steps = np.diff(value)
         assert np.max(np.abs(np.diff(steps))) < 0.03 * np.max(np.abs(steps))  # no step, no kink
+
+
+def test_roots_of_features_are_found_whatever_the_function():
+    rng = np.random.default_rng(0)
+    root, steep = rng.uniform(0, 1, 300), 10 ** rng.uniform(0, 6, 300)
+    zero, one = np.zeros(300), np.ones(300)
+    for function in (lambda x: -np.tanh(steep * (x - root)), lambda x: root**3 - x**3,
+                     lambda x: np.where(x < root, 1.0, -1.0)):  # fmt: skip
+        np.testing.assert_allclose(_falling_root(function, zero, one), root, rtol=0, atol=2e-12)
+    # no change of sign: the end towards which the function points
+    np.testing.assert_array_equal(_falling_root(lambda x: 1 + 0 * x, zero, one), one)
+    np.testing.assert_array_equal(_falling_root(lambda x: -1 + 0 * x, zero, one), zero)
+    assert np.isnan(_falling_root(lambda x: np.nan * x, zero, one)).all()
+    # a member does not depend on the others
+    alone = [_falling_root(lambda x, c=c: c**3 - x**3, np.zeros(1), np.ones(1))[0] for c in root[:20]]
+    np.testing.assert_array_equal(alone, _falling_root(lambda x: root[:20] ** 3 - x**3, zero[:20], one[:20]))
 
 
 def test_polypropylene_has_no_peak():
