@@ -10,8 +10,8 @@ from skinbayes.vocabulary import LABELS, QUANTITIES
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
-SUBSCRIPT = re.compile(r"(?<![^\W_])([^\W\d_][\u0300-\u036f]?)(?:_(\w+)|(\d))(?!\w)")
-"""A letter (with an accent) and its subscript: ``σ_f``, ``E0``, ``A_pl``."""
+SUBSCRIPT = re.compile(r"(?<![^\W_])(Δ?[^\W\d_][\u0300-\u036f]?)(?:_(\w+)|(\d))(?!\w)")
+"""A letter (with an accent, or a difference of it) and its subscript: ``σ_f``, ``E0``, ``A_pl``, ``Δt_peak``."""
 
 _SPOKEN = (
     (re.compile(r"^young_modulus_"), "Young's modulus of the "),
@@ -34,14 +34,14 @@ def figure_text(text: str) -> str:
 
     Examples
     --------
-    >>> figure_text("σ_f/(E0 s)"), figure_text("costs $5")
-    ('$\\\\mathregular{σ_{f}}$/($\\\\mathregular{E_{0}}$ s)', 'costs \\\\$5')
+    >>> figure_text("σ_f/(E0 s)"), figure_text("Δt_peak"), figure_text("costs $5")
+    ('$\\\\mathregular{σ_{f}}$/($\\\\mathregular{E_{0}}$ s)', '$\\\\mathregular{Δt_{peak}}$', 'costs \\\\$5')
     """
     pieces, end = [], 0
     for match in SUBSCRIPT.finditer(text):
         pieces.append(text[end : match.start()].replace("$", r"\$"))
         letter, below = match.group(1), match.group(2) or match.group(3)
-        plain = letter.isalpha() and len(letter) == 1 and "_" not in below
+        plain = letter.isalpha() and len(letter.removeprefix("Δ")) == 1 and "_" not in below
         pieces.append(
             rf"$\mathregular{{{letter}_{{{below}}}}}$" if plain and "$" not in text else match.group(0)
         )
