@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import elastoplastic_contact_area, stress_variance
+from skinbayes.contact import stress_variance, total_contact_area
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import Closure
@@ -96,12 +96,12 @@ def _evaluate(
     known = {**with_modulus(inputs), "nominal_pressure": load}
     pull = _pull(known, tables, closure, table)
     variance = stress_variance(spectrum_of(known, tables), skin_of(known))
-    area = elastoplastic_contact_area(load + pull, variance, known["yield_stress"], known["area_correction"])
+    area = total_contact_area(load + pull, variance, known["yield_stress"], known["area_correction"])
     return {
         "friction_coefficient": np.asarray(
-            friction_coefficient(known["frictional_shear_stress"], area.total, load)
+            friction_coefficient(known["frictional_shear_stress"], area, load)
         ),
-        "relative_contact_area": area.total,
+        "relative_contact_area": area,
         "kelvin_radius": kelvin_radius_of(known),
         "capillary_pressure": pull,
     }

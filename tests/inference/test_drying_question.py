@@ -88,13 +88,19 @@ def test_the_model_that_made_the_series_is_found(made_by: str, tmp_path: Path) -
 def test_so_it_is_with_all_that_the_page_leaves_free(made_by: str, tmp_path: Path) -> None:
     times = np.concatenate([np.linspace(0.0, 25.0, 4), np.linspace(40.0, 600.0, 56)])
     problems = both(tmp_path, times, made_by, {})
-    fits = {
-        name: sample(problem, seed=1, ess=400, walkers=48, max_steps=1000)
-        for name, problem in problems.items()
-    }
-    name, errors, _ = best(fits)
-    assert name == made_by
-    assert errors > 2
+    fits = {name: sample(problem, seed=1, ess=400, max_steps=3000) for name, problem in problems.items()}
+    assert all(fit.converged for fit in fits.values())
+    name, errors, weight = best(fits)
+    assert name == made_by and weight > 0.9
+    if made_by == "bridges":
+        assert errors > 2
+    else:
+        # bridges are pale on a skin that is rough enough: prediction alone then hardly tells them from none, but such
+        # a skin contradicts its prior, as the page says
+        assert errors > 1
+        highest = problems["bridges"].prior_transform(np.full(problems["bridges"].dimension, 0.95))
+        rough = problems["bridges"].names.index("rms_height")
+        assert np.quantile(fits["bridges"].draws("rms_height"), 0.05) > highest[rough]
     # what made the series is found again
     fit, problem = fits[made_by], problems[made_by]
     for parameter in problem.names:
