@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.wetting._falling import falling_root
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._mixture import Filled, Mixture, fill
 from skinbayes.wetting._types import BoolArray
@@ -53,14 +52,14 @@ def roots_at_gaps(
     end = start[:, None] + np.log1p(strength)
     rungs = max(2, int(np.ceil(np.nanmax(end - start[:, None], initial=0.0) / _RUNG)) + 1)
 
-    def residual(x: FloatArray) -> FloatArray:
+    def climb(x: FloatArray) -> FloatArray:
         area = filled_at(source, x, gap)[0].area
-        return np.asarray(x - start[:, None] - np.log1p(strength * area))
+        return np.asarray(start[:, None] + np.log1p(strength * area) - x)
 
     if not (count or largest):
         low = start[:, None] + _RUNG * (_first_rise(source, start, strength, gap, rungs) - 1)
         possible = np.isfinite(low) & np.isfinite(strength)
-        smallest = bracketed_roots(residual, low, low + _RUNG)
+        smallest = falling_root(climb, low, low + _RUNG, _CLOSE)
         return np.where(possible, smallest, np.nan), np.full(gap.shape, np.nan)
     ladder = start[:, None] + _RUNG * np.arange(rungs)
     mixture, _ = source.at(np.exp(ladder))
@@ -80,7 +79,7 @@ def roots_at_gaps(
         low[row] = ladder[row][rung]
         high[row] = np.append(ladder[row][1:], ladder[row][-1] + _RUNG)[rung]
     possible = np.isfinite(low) & np.isfinite(strength)
-    found: FloatArray = np.where(possible, bracketed_roots(residual, low, high), np.nan)
+    found: FloatArray = np.where(possible, falling_root(climb, low, high, _CLOSE), np.nan)
     return found, np.where(possible, solutions, np.nan)
 
 
@@ -112,29 +111,6 @@ def _first_rise(
         rows = rows[sought[rows].any(axis=1)]
         first, span = first + span, 2 * span
     return found
-
-
-def bracketed_roots(
-    residual: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
-) -> FloatArray:
-    """Roots of ``residual`` between ``low`` and ``high``, by regula falsi with the weight of a stale end halved (Illinois)."""
-    at_low, at_high = residual(low), residual(high)
-    x = np.where(at_high == 0, high, low)
-    active = (at_low < 0) & (at_high > 0)
-    last = np.zeros(x.shape)  # the end that moved last: 1 the upper, -1 the lower
-    for _ in range(80):
-        if not active.any():
-            break
-        following = high - at_high * (high - low) / (at_high - at_low)
-        x = np.where(active, following, x)
-        value = residual(x)
-        upper, lower = active & (value > 0), active & (value <= 0)
-        at_low = np.where(lower, value, np.where(upper & (last == 1), at_low / 2, at_low))
-        at_high = np.where(upper, value, np.where(lower & (last == -1), at_high / 2, at_high))
-        high, low = np.where(upper, x, high), np.where(lower, x, low)
-        last = np.where(upper, 1, np.where(lower, -1, last))
-        active &= (np.abs(value) > _CLOSE) & (high - low > 4e-16 * np.abs(x))
-    return x
 
 
 def refine_films(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -10,10 +9,10 @@ from scipy.special import ndtr
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.friction import friction_coefficient
+from skinbayes.wetting._falling import falling_root
 from skinbayes.wetting.film_contact import FilmContact
 
-_SEARCH, _STEPS = 192, 60
-_CLOSE = 1e-13  # of the bracket; a step that short is the last
+_SEARCH = 192
 _NO_SPREAD = 1e-12  # m
 _NO_PEAK = 1e-6  # height of a peak over the wet plateau, relative, below which there is none
 
@@ -193,20 +192,20 @@ def drying_features(
         def slope(place: FloatArray) -> FloatArray:
             return contact.average(place[..., None], spread)[1][..., 0]
 
-        peak = _falling_root(slope, left, right)
+        peak = falling_root(slope, left, right)
         height = contact.average(peak[..., None], spread)[0][..., 0]
         middle = (height + plateau) / 2
 
         def above(place: FloatArray) -> FloatArray:
             return np.asarray(contact.average(place[..., None], spread)[0][..., 0] - middle)
 
-        rise = _falling_root(above, peak, high)
+        rise = falling_root(above, peak, high)
         # the crossing on the dry side nearest to the peak
         order = np.arange(_SEARCH)
         under = (areas < middle[..., None]) & (order < top)
         last = np.where(under.any(axis=-1), _SEARCH - 1 - under[..., ::-1].argmax(axis=-1), 0)[..., None]
         edge = np.take_along_axis(grid, last, axis=-1)[..., 0]
-        fall = _falling_root(lambda x: -above(x), edge, np.minimum(edge + (high - low) / (_SEARCH - 1), peak))
+        fall = falling_root(lambda x: -above(x), edge, np.minimum(edge + (high - low) / (_SEARCH - 1), peak))
         there = height > plateau * (1 + _NO_PEAK)
         friction = [
             friction_coefficient(frictional_shear_stress, x, nominal_pressure) for x in (height, plateau, dry)
@@ -219,34 +218,3 @@ def drying_features(
             friction[2],
             np.where(possible, start + film / rate, np.nan)[()],
         )
-
-
-def _falling_root(
-    function: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
-) -> FloatArray:
-    """Where a function falls through zero between ``low`` and ``high``; each member on its own.
-
-    False position, the end that stays halved (Illinois), every fourth step a bisection. Without a change of sign the root is the
-    end towards which the function points, where the function is nan it is nan.
-    """
-    low, high = low.copy(), high.copy()
-    left, right = function(low), function(high)
-    close = _CLOSE * (high - low)
-    root = np.where(left > 0, high, low) + 0.0 * (left + right)
-    active = (left > 0) & (right <= 0)
-    stayed = np.zeros(low.shape, dtype=np.int8)  # which end stayed in the step before
-    for step in range(_STEPS):
-        if not active.any():
-            break
-        share = 0.5 if step % 4 == 3 else left / (left - right)
-        place = np.where(active, low + share * (high - low), root)
-        value = function(place)
-        root = np.where(active, place, root)
-        active &= (value != 0) & (np.minimum(place - low, high - place) > close)
-        up, down = active & (value > 0), active & ~(value > 0)
-        right = np.where(up & (stayed > 0), right / 2, right)
-        left = np.where(down & (stayed < 0), left / 2, left)
-        low, left = np.where(up, place, low), np.where(up, value, left)
-        high, right = np.where(down, place, high), np.where(down, value, right)
-        stayed = np.where(up, 1, np.where(down, -1, stayed)).astype(np.int8)
-    return root

@@ -20,14 +20,15 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact import LayeredSkin
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
+from skinbayes.wetting._falling import falling_root
 from skinbayes.wetting._gaps import GapSource
-from skinbayes.wetting._refine import bracketed_roots
 from skinbayes.wetting._types import BoolArray
 
 _STEPS = {"load": 0.15, "gap": 0.25, "stiffness": 0.2, "layer_thickness": 0.3}
 _ROOM = 3  # nodes beyond the ends of an axis, where a spline is poor
 _RUNG = 0.12  # of the ladder of ln p on which roots are told apart, as in the solution without a table
 _FIRST_RUNGS = 3
+_CLOSE = 1e-12  # of ln p
 _LITTLE = 1e-12  # of the area, added to F so that its logarithm has a floor
 _BLOCK = 64  # skins at a time
 _WIDEN = 1e-9  # of the box, for rounding
@@ -106,7 +107,7 @@ class HumidTable:
             low[rows[now]] = _RUNG * (first + above[now].argmax(axis=1))
             rows = rows[~now]
             first, span = first + span, 2 * span
-        return bracketed_roots(lambda x: excess(x, groups, strength), low, low + _RUNG)
+        return falling_root(lambda x: -excess(x, groups, strength), low, low + _RUNG, _CLOSE)
 
 
 def humid_groups(

@@ -21,7 +21,7 @@ from skinbayes.wetting import (
     evaporation_rate_from_pressures,
     film_contact,
 )
-from skinbayes.wetting.drying import _falling_root
+from skinbayes.wetting._falling import falling_root
 
 SURFACE = named_surface("paper_reference")
 WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
@@ -175,14 +175,14 @@ def test_roots_of_features_are_found_whatever_the_function():
     zero, one = np.zeros(300), np.ones(300)
     for function in (lambda x: -np.tanh(steep * (x - root)), lambda x: root**3 - x**3,
                      lambda x: np.where(x < root, 1.0, -1.0)):  # fmt: skip
-        np.testing.assert_allclose(_falling_root(function, zero, one), root, rtol=0, atol=2e-12)
+        np.testing.assert_allclose(falling_root(function, zero, one), root, rtol=0, atol=2e-12)
     # no change of sign: the end towards which the function points
-    np.testing.assert_array_equal(_falling_root(lambda x: 1 + 0 * x, zero, one), one)
-    np.testing.assert_array_equal(_falling_root(lambda x: -1 + 0 * x, zero, one), zero)
-    assert np.isnan(_falling_root(lambda x: np.nan * x, zero, one)).all()
+    np.testing.assert_array_equal(falling_root(lambda x: 1 + 0 * x, zero, one), one)
+    np.testing.assert_array_equal(falling_root(lambda x: -1 + 0 * x, zero, one), zero)
+    assert np.isnan(falling_root(lambda x: np.nan * x, zero, one)).all()
     # a member does not depend on the others
-    alone = [_falling_root(lambda x, c=c: c**3 - x**3, np.zeros(1), np.ones(1))[0] for c in root[:20]]
-    np.testing.assert_array_equal(alone, _falling_root(lambda x: root[:20] ** 3 - x**3, zero[:20], one[:20]))
+    alone = [falling_root(lambda x, c=c: c**3 - x**3, np.zeros(1), np.ones(1))[0] for c in root[:20]]
+    np.testing.assert_array_equal(alone, falling_root(lambda x: root[:20] ** 3 - x**3, zero[:20], one[:20]))
 
 
 def test_polypropylene_has_no_peak():
