@@ -46,8 +46,9 @@ def sample(
 ) -> Fit:
     """Sample the posterior of a problem with emcee until the stopping rule is met.
 
-    Several independent ensembles start from the prior and run until autocorrelation time, effective sample size and R-hat
-    over ensembles agree that enough has been sampled (see ``skinbayes.sampling.stopping``). One seed gives the same draws
+    Several independent ensembles start from draws of the prior, led towards the posterior where those do not find it (see
+    ``skinbayes.statistics.annealing``), and run until autocorrelation time, effective sample size and R-hat over ensembles
+    agree that enough has been sampled (see ``skinbayes.sampling.stopping``). One seed gives the same draws
     bit for bit on any number of cores, resumed or not.
 
     Parameters
