@@ -189,7 +189,7 @@ _ALL = (
     _closed("initial_film", "d_0", "m", "average thickness of the water film right after wetting"),
     _closed("film_spread", "σ_film", "m", "standard deviation of the film thickness over the track"),
     Quantity("film_floor", "d_floor", "m", "film thickness below which skin counts as dry"),
-    Quantity("young_modulus_layer_dry", "E0_dry", "Pa", "Young's modulus of the dry stratum corneum"),
+    Quantity("young_modulus_layer_dry", "E_dry", "Pa", "Young's modulus of the dry stratum corneum"),
     Quantity("hardening_film", "d_h", "m", "film thickness at which ln E0 is half way between wet and dry"),
     Quantity("hardening_sharpness", "k_h", "1", "how abruptly the stratum corneum hardens"),
     _closed("peak_time", "t_peak", "s", "time of the largest friction while the film evaporates"),
@@ -200,7 +200,7 @@ _ALL = (
     _closed("dry_time", "t_dry", "s", "time at which the film is gone"),
     # humid air
     Quantity(
-        "young_modulus_layer_wet", "E0_wet", "Pa", "Young's modulus of the stratum corneum in saturated air"
+        "young_modulus_layer_wet", "E_wet", "Pa", "Young's modulus of the stratum corneum in saturated air"
     ),
     Quantity(
         "transition_humidity",

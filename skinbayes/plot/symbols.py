@@ -10,10 +10,11 @@ from skinbayes.vocabulary import LABELS, QUANTITIES
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
-SUBSCRIPT = re.compile(r"(?<![^\W_])(Δ?[^\W\d_][\u0300-\u036f]?)(?:_(\w+)|(\d))(?!\w)")
-"""A letter (with an accent, or a difference of it) and its subscript: ``σ_f``, ``E0``, ``A_pl``, ``Δt_peak``."""
+SUBSCRIPT = re.compile(r"(?<![^\W_])(RH(?=_)|Δ?[^\W\d_][\u0300-\u036f]?)(?:_(\w+)|(\d))(?!\w)")
+"""A letter (with an accent, or a difference of it) and its subscript: ``σ_f``, ``E0``, ``A_pl``, ``Δt_peak``; and ``RH_t``."""
 
 _SPOKEN = (
+    (re.compile(r"^young_modulus_layer_(dry|wet)$"), r"Young's modulus of the \1 layer"),
     (re.compile(r"^young_modulus_"), "Young's modulus of the "),
     (re.compile(r"^poisson_ratio_"), "Poisson ratio of the "),
     (re.compile(r"^contact_angle_"), "contact angle on "),
@@ -41,7 +42,9 @@ def figure_text(text: str) -> str:
     for match in SUBSCRIPT.finditer(text):
         pieces.append(text[end : match.start()].replace("$", r"\$"))
         letter, below = match.group(1), match.group(2) or match.group(3)
-        plain = letter.isalpha() and len(letter.removeprefix("Δ")) == 1 and "_" not in below
+        plain = (
+            letter.isalpha() and (letter == "RH" or len(letter.removeprefix("Δ")) == 1) and "_" not in below
+        )
         pieces.append(
             rf"$\mathregular{{{letter}_{{{below}}}}}$" if plain and "$" not in text else match.group(0)
         )
