@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,6 +134,11 @@ class ForwardModel:
 
     def input_names(self) -> tuple[str, ...]:
         """All inputs the model takes, sorted; roughness inputs included if it has a surface."""
+        return self._input_names
+
+    @cached_property
+    def _input_names(self) -> tuple[str, ...]:
+        # asked for at every evaluation
         roughness = ROUGHNESS_INPUTS if self.uses_surface else ()
         return tuple(sorted({*self.required_names(), *self.optional, *self.accepted, *roughness}))
 

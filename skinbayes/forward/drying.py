@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -46,13 +46,8 @@ def _evaluate(
     inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None = None
 ) -> dict[str, FloatArray]:
     # noise that differs by row must not part rows that share a curve
-    known = {name: value for name, value in inputs.items() if name in _input_names()}
+    known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
     return along_rows(known, "time", partial(_dried, tables=tables, closure=closure, table=table))
-
-
-@cache
-def _input_names() -> frozenset[str]:
-    return frozenset(MODEL.input_names())
 
 
 def _grid(inputs: Inputs, tables: Tables) -> FloatArray:

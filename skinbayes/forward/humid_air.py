@@ -62,6 +62,11 @@ _PRESSES = {
 """What the pull depends on."""
 
 
+def _with_pressing(inputs: Inputs) -> dict[str, FloatArray]:
+    """The inputs with the modulus of the layer and the nominal pressure, however they were given."""
+    return {**with_modulus(inputs), "nominal_pressure": nominal_pressure_of(inputs)}
+
+
 def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
     state = capillary_state_in_humid_air(
         humidity,
@@ -92,9 +97,8 @@ def _pull(known: Inputs, tables: Tables, closure: Closure, table: TabulatedPull 
 def _evaluate(
     inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None = None
 ) -> dict[str, FloatArray]:
-    load = nominal_pressure_of(inputs)
-    known = {**with_modulus(inputs), "nominal_pressure": load}
-    pull = _pull(known, tables, closure, table)
+    known = _with_pressing(inputs)
+    load, pull = known["nominal_pressure"], _pull(known, tables, closure, table)
     variance = stress_variance(spectrum_of(known, tables), skin_of(known))
     area = total_contact_area(load + pull, variance, known["yield_stress"], known["area_correction"])
     return {
@@ -110,11 +114,11 @@ def _evaluate(
 def _flags(
     inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None = None
 ) -> dict[str, NDArray[np.bool_]]:
-    pull = _evaluate(inputs, tables, closure, table)["capillary_pressure"]
-    gap = kelvin_gap_of(inputs)
+    known = _with_pressing(inputs)
+    pull, gap = _pull(known, tables, closure, table), kelvin_gap_of(known)
     below = (is_below_molecule(gap) > 0) & (gap > 0)
     return {
-        "strong_bridges": pull > STRONG_PULL * nominal_pressure_of(inputs),
+        "strong_bridges": pull > STRONG_PULL * known["nominal_pressure"],
         "below_molecule": np.broadcast_to(below, pull.shape),
     }
 

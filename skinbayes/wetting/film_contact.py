@@ -20,7 +20,7 @@ from skinbayes.errors import InputError
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._bridged import Bridged
-from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, values_between
+from skinbayes.wetting._chebyshev import coefficients, lobatto, series, values_between
 from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
 from skinbayes.wetting._uneven import uneven_average
 from skinbayes.wetting.bridge_table import BridgeTable
@@ -258,4 +258,4 @@ def _hardened(
     share = softened_modulus(one, np.e * one, wetness, np.where(power > 0, power, np.nan)[..., None])
     wet_share = np.log(share)
     left = 1 - wet_share / wet_share[..., -1:]  # 0 where the gap is flooded
-    return clenshaw(parts, 2 * left.reshape(-1, 1) - 1)[0].reshape(films.shape)
+    return series(parts[..., None], 2 * left.reshape(-1, 1) - 1).reshape(films.shape)
