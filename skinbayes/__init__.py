@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
-__all__ = ["Dataset", "Fit", "InputError", "Problem", "__version__", "compare", "load_dataset", "load_fit", "load_problem",
-           "sample"]  # fmt: skip
+__all__ = ["Dataset", "Fit", "InputError", "NoiseFamily", "Problem", "__version__", "compare", "load_dataset", "load_fit",
+           "load_problem", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
     from skinbayes.problem import Problem, load_problem
+    from skinbayes.statistics import NoiseFamily, register_noise
+    from skinbayes.vocabulary import register_quantity
 
 _HOME = {
     "Dataset": "skinbayes.files.dataset",
@@ -35,6 +37,9 @@ _HOME = {
     "load_dataset": "skinbayes.files.dataset",
     "load_fit": "skinbayes.fit",
     "load_problem": "skinbayes.problem",
+    "NoiseFamily": "skinbayes.statistics",
+    "register_noise": "skinbayes.statistics",
+    "register_quantity": "skinbayes.vocabulary",
     "sample": "skinbayes.fit",
 }
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, pi
 
+from skinbayes.errors import InputError
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -238,6 +240,52 @@ _ALL = (
 
 QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
 """Every known quantity by name."""
+
+
+def register_quantity(
+    name: str,
+    *,
+    symbol: str,
+    unit: str,
+    meaning: str = "",
+    minimum: float = 0.0,
+    maximum: float = inf,
+) -> Quantity:
+    """Make a quantity of one's own known, so that model files, data headers and results can name it.
+
+    Parameters
+    ----------
+    name : letters, digits and underscores; the name used everywhere
+    symbol : for equations and plots, plain text
+    unit : SI unit as written in headers, ``"1"`` for dimensionless numbers
+    meaning : a short description
+    minimum, maximum : its physical range in ``unit``, ends included
+
+    Returns
+    -------
+    Quantity
+
+    Raises
+    ------
+    InputError
+        Not a name, or the name of another quantity.
+
+    Examples
+    --------
+    >>> register_quantity("sebum_level", symbol="s", unit="kg/m^2", meaning="sebum on the skin").range_text()
+    '>= 0 kg/m^2'
+    >>> del QUANTITIES["sebum_level"]
+    """
+    if not (name.isidentifier() and name.isascii()):
+        raise InputError(f"{name!r} cannot name a quantity; expected letters, digits and underscores")
+    quantity = Quantity(
+        name, symbol, unit, meaning or name.replace("_", " "), minimum, maximum, lower_open=False
+    )
+    if name in LABELS or QUANTITIES.get(name, quantity) != quantity:
+        raise InputError(f"'{name}' means something else already; give your quantity another name")
+    QUANTITIES[name] = quantity
+    return quantity
+
 
 LABELS: dict[str, str] = {
     "person": "who was measured",

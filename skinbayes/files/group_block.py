@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from skinbayes.errors import InputError
 from skinbayes.files.modelschema import CovariateBlock, GroupBlock
 from skinbayes.files.parameter_block import ParameterSpec, parse_parameter, parse_value
-from skinbayes.statistics.noise import NOISE_FAMILIES
+from skinbayes.statistics.noise_families import NOISE_FAMILIES
 from skinbayes.vocabulary import LABELS, QUANTITIES, suggestions
 
 GROUP, COVARIATE = "group", "covariate"

@@ -14,7 +14,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.group_block import CovariateSpec, read_covariates, read_groups
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, ModelBlock, RheologyBlock
-from skinbayes.files.noise_block import NOISE_PARAMETERS, read_noise
+from skinbayes.files.noise_block import noise_parameter_names, read_noise
 from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_value
 from skinbayes.files.toml_text import explain, line_of, read_toml
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
@@ -203,7 +203,7 @@ def _check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
 
 
 def _parameter_quantity(name: str, where: str) -> Quantity:
-    if name in NOISE_PARAMETERS:
+    if name in noise_parameter_names():
         raise InputError(f"{where}: '{name}' belongs into [noise]")
     if name not in QUANTITIES:
         raise InputError(f"{where}: unknown parameter '{name}'.{suggestions(name, list(QUANTITIES))}")

@@ -7,14 +7,22 @@ from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_parameter
-from skinbayes.statistics.noise import NOISE_FAMILIES
+from skinbayes.statistics.noise import NoiseFamily
+from skinbayes.statistics.noise_families import NOISE_FAMILIES
 from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
 
-NOISE_PARAMETERS = ("noise_scale", "degrees_of_freedom", "discrepancy_factor", "discrepancy_scale")
-"""Parameters that live in ``[noise]``."""
+NOISE_PARAMETERS = ("noise_scale", "discrepancy_factor", "discrepancy_scale")
+"""Parameters of ``[noise]`` that every family has; those of the shape of a family come to them."""
+
 
 OBSERVABLE = "observable"
 """What the noise of a model with several observables differs by."""
+
+
+def noise_parameter_names() -> tuple[str, ...]:
+    """Every parameter that can stand in ``[noise]``, of all families that are known."""
+    shapes = [name for family in NOISE_FAMILIES.values() for name in family.shape_parameters]
+    return tuple(dict.fromkeys((*NOISE_PARAMETERS, *shapes)))
 
 
 def read_noise(
@@ -85,7 +93,7 @@ def _one_observable(
     for name, entry in block.items():
         if name == "family":
             continue
-        quantity = _noise_quantity(name, where(*place, name))
+        quantity = _noise_quantity(name, noise, where(*place, name))
         unit_here = unit if name == "noise_scale" else None
         if level is None:
             parameters += parse_levels(
@@ -96,20 +104,25 @@ def _one_observable(
                 parse_parameter(quantity, entry, where(*place, name), unit_here, OBSERVABLE, level)
             )
     given = {parameter.name for parameter in parameters}
-    needed = {"noise_scale", "degrees_of_freedom"} if noise.heavy_tailed else {"noise_scale"}
-    if missing := sorted(needed - given):
+    if missing := [name for name in ("noise_scale", *noise.shape_parameters) if name not in given]:
         raise InputError(f"{where(*place)}: noise family '{family}' needs {' and '.join(missing)}")
-    if "degrees_of_freedom" in given and "degrees_of_freedom" not in needed:
-        raise InputError(
-            f"{where(*place, 'degrees_of_freedom')}: noise family '{family}' has no degrees of freedom"
-        )
     return str(family), tuple(parameters)
 
 
-def _noise_quantity(name: str, where: str) -> Quantity:
-    if name not in NOISE_PARAMETERS:
-        known = ["family", *NOISE_PARAMETERS]
+def _noise_quantity(name: str, noise: NoiseFamily, where: str) -> Quantity:
+    if name not in (*NOISE_PARAMETERS, *noise.shape_parameters):
+        if owners := [other.name for other in NOISE_FAMILIES.values() if name in other.shape_parameters]:
+            raise InputError(
+                f"{where}: noise family '{noise.name}' has no {QUANTITIES[name].meaning if name in QUANTITIES else name}; "
+                f"{' and '.join(owners)} {'have' if len(owners) > 1 else 'has'}"
+            )
+        known = ["family", *NOISE_PARAMETERS, *noise.shape_parameters]
         raise InputError(
             f"{where}: unknown key '{name}'.{suggestions(name, known)} Expected {', '.join(known)}"
+        )
+    if name not in QUANTITIES:
+        raise InputError(
+            f"{where}: '{name}' of noise family '{noise.name}' is no known quantity; declare it first with "
+            "skinbayes.register_quantity"
         )
     return QUANTITIES[name]

@@ -13,7 +13,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
-from skinbayes.files.modelfile import NOISE_PARAMETERS
+from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def _predictions(problem: Problem, draws: FloatArray) -> tuple[tuple[str, ...], 
 
 
 def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
-    scatter = (*NOISE_PARAMETERS, "group_scale")
+    scatter = (*noise_parameter_names(), "group_scale")
     entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
     if not entering:
         return None

@@ -1,38 +1,45 @@
-"""Digests that tell whether two problems are the same."""
+"""Digests that tell whether two problems are the same, computed from what the problems are."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from skinbayes.arrays import ArrayLike
+from skinbayes.arrays import FloatArray
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import Tables
+from skinbayes.forward import ForwardModel, Tables
+from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.roughness import TabulatedSpectrum
+from skinbayes.statistics.groups import CrossedGroups
+from skinbayes.statistics.noise import NoiseFamily
 
 
 def digest_data(dataset: Dataset | None, observations: Sequence[Observation]) -> str:
     """Digest of the data alone: values, labels, spread and which columns are explained."""
-    digest = hashlib.sha256()
-    if dataset is not None and observations:
-        digest.update(json.dumps([[o.name for o in observations], list(dataset.columns)]).encode())
-        for column in dataset.columns.values():
-            digest.update(column.astype(str).tobytes() if column.dtype.kind == "U" else column.tobytes())
-        for observation in observations:
-            digest.update(observation.spread.tobytes())
-    return digest.hexdigest()
+    return _digest(
+        {
+            "observed": [[o.name, _array(o.values), _array(o.spread)] for o in observations],
+            "columns": _arrays(dataset.columns) if dataset is not None and observations else {},
+        }
+    )
 
 
 def digest_model(
     spec: ModelSpec,
-    free: tuple[ParameterSpec, ...],
-    fixed: tuple[ParameterSpec, ...],
+    forward: ForwardModel,
+    parameters: Sequence[ParameterSpec],
+    conditions: Conditions,
+    observations: Sequence[Observation],
+    input_spread: Mapping[str, FloatArray],
+    groups: CrossedGroups | None,
     tables: Tables,
     data_digest: str,
 ) -> str:
@@ -40,24 +47,43 @@ def digest_model(
     from skinbayes import __version__
 
     table = tables.spectrum
-    content = {
-        "version": __version__,
-        "forward": spec.forward,
-        "observables": spec.observables,
-        "noise": spec.noise,
-        "input_spread": spec.input_spread,
-        "covariates": [[c.name, c.column, c.acts_on, repr(c.reference)] for c in spec.covariates],
-        "free": [(p.by, p.label, repr(p.prior)) for p in free],
-        "fixed": sorted((str(p.by), p.label, repr(p.value)) for p in fixed),
-        "data": data_digest,
-        "table": None if not isinstance(table, TabulatedSpectrum) else [
-            table.wavevector.tolist(), table.node_power.tolist(), np.asarray(table.scale).tolist()
-        ],
-        "flow_curves": [[_list(c.shear_rate), _list(c.measured_viscosity)] for c in tables.flow_curves or ()],
-    }  # fmt: skip
+    return _digest(
+        {
+            "version": __version__,
+            "forward": [forward.name, f"{forward.evaluate.__module__}.{forward.evaluate.__qualname__}"],
+            "noise": [_noise(o.noise) for o in observations],
+            "covariates": [[c.name, c.column, c.acts_on, repr(c.reference)] for c in spec.covariates],
+            # the order of free parameters is that of the coordinates of a run
+            "free": [(p.by, p.label, repr(p.prior)) for p in parameters if p.prior is not None],
+            "fixed": sorted((str(p.by), p.label, repr(p.value)) for p in parameters if p.prior is None),
+            "conditions": [_arrays(conditions.values), _arrays(conditions.covariates)],
+            "labels": _arrays(conditions.labels),
+            "input_spread": _arrays(input_spread),
+            "groups": None if groups is None else [groups.columns, groups.levels, _array(groups.member)],
+            "data": data_digest,
+            "spectrum": None if not isinstance(table, TabulatedSpectrum) else [
+                _array(table.wavevector), _array(table.node_power), _array(table.scale)
+            ],
+            "flow_curves": [[_array(c.shear_rate), _array(c.measured_viscosity)] for c in tables.flow_curves or ()],
+        }
+    )  # fmt: skip
+
+
+def _noise(family: NoiseFamily) -> list[str]:
+    density = family.standard_log_density
+    return [family.name, f"{density.__module__}.{density.__qualname__}"]
+
+
+def _digest(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def _list(values: ArrayLike) -> list[float]:
-    found: list[float] = np.asarray(values, dtype=float).tolist()
-    return found
+def _arrays(columns: Mapping[str, NDArray[Any]]) -> dict[str, str]:
+    return {name: _array(column) for name, column in columns.items()}
+
+
+def _array(values: Any) -> str:
+    array = np.ascontiguousarray(values)
+    text = array.dtype.kind == "U"
+    content = json.dumps(array.tolist()).encode() if text else array.astype(float).tobytes()
+    return f"{array.shape} {hashlib.sha256(content).hexdigest()}"

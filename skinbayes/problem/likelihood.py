@@ -132,21 +132,23 @@ class Likelihood:
         return inputs, [np.broadcast_to(found[o.name], shape) for o in self._observations]
 
     def _arguments(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        propagated = None
-        if self.problem.input_spread:
-            propagated = propagated_spread(
-                lambda changed: self.problem.evaluate(changed)[observation.name],
-                inputs,
-                self.problem.input_spread,
-                observation,
-            )
-        return observation.noise_arguments(inputs, propagated)
+        return observation.noise_arguments(inputs, self._propagated(observation, inputs))
+
+    def _propagated(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> FloatArray | None:
+        """Uncertainty of the prediction from the known spread of inputs, if there is any."""
+        if not self.problem.input_spread:
+            return None
+        return propagated_spread(
+            lambda changed: self.problem.evaluate(changed)[observation.name],
+            inputs,
+            self.problem.input_spread,
+            observation,
+        )
 
     def _width(
         self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
     ) -> FloatArray:
-        arguments = self._arguments(observation, inputs)
-        arguments.pop("degrees_of_freedom", None)
+        arguments = observation.width_arguments(inputs, self._propagated(observation, inputs))
         width = observation.noise.width(predicted, observed=observation.values, **arguments)
         return np.broadcast_to(width, predicted.shape)
 

@@ -15,7 +15,6 @@ from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, Tables, forward_model
 from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
 from skinbayes.problem.covariates import check_covariates
-from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, plan_inputs
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.problem import Problem
@@ -118,11 +117,10 @@ def load_problem(
     check_scatter(spec, observations)
     check_derived(spec, forward, parameters, bound, whole_data=dataset is not None and data is None)
     try:
-        plan = plan_inputs(fixed, free, bound)
+        plan_inputs(fixed, free, bound)
     except InputError as error:
         raise InputError(f"{spec.path}: {error}") from None
     tables = Tables(table, flow_curves_of(curves, spec.rheology_by, bound, spec.path))
-    data_digest = digest_data(dataset, observations)
     problem = Problem(
         spec=spec,
         forward=forward,
@@ -135,9 +133,6 @@ def load_problem(
         groups=crossed_groups(spec, bound) if observations else None,
         tables=tables,
         flow_curves=curves,
-        fingerprint=digest_model(spec, free, fixed, tables, data_digest),
-        data_fingerprint=data_digest,
-        _plan=plan,
         settings=dict(settings or {}),
         surface_file=surface_file,
     )

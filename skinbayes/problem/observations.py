@@ -10,12 +10,8 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.statistics.noise import NoiseFamily
 
-NOISE_WORDS = {
-    "noise_scale": "scale",
-    "discrepancy_scale": "discrepancy",
-    "degrees_of_freedom": "degrees_of_freedom",
-}
-"""Parameters of ``[noise]`` and what the noise families call them."""
+NOISE_WORDS = {"noise_scale": "scale", "discrepancy_scale": "discrepancy"}
+"""Parameters of ``[noise]`` that make the width of the noise, and what the noise families call them."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +41,17 @@ class Observation:
         self, inputs: Mapping[str, FloatArray], propagated: FloatArray | None = None
     ) -> dict[str, FloatArray]:
         """Arguments of the noise family from the inputs; ``propagated`` is an uncertainty that adds to the known spread."""
+        shape = {name: inputs[self.key(name)] for name in self.noise.shape_parameters}
+        return self.width_arguments(inputs, propagated) | shape
+
+    def width_arguments(
+        self, inputs: Mapping[str, FloatArray], propagated: FloatArray | None = None
+    ) -> dict[str, FloatArray]:
+        """Those of :meth:`noise_arguments` that set the width of the noise."""
         found = {
             word: inputs[self.key(name)] for name, word in NOISE_WORDS.items() if self.key(name) in inputs
         }
-        spread = self.spread
-        if propagated is not None:
-            spread = np.hypot(spread, propagated)
+        spread = self.spread if propagated is None else np.hypot(self.spread, propagated)
         return found | {"spread": spread}
 
 

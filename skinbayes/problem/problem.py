@@ -18,7 +18,9 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
 from skinbayes.forward.base import Progress
+from skinbayes.problem.batches import as_batch, impossible, unbatch
 from skinbayes.problem.covariates import apply_covariates, factor_key
+from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.observations import Observation
@@ -51,9 +53,7 @@ class Problem:
     input_spread : inputs to their known standard deviation over their value, shape ``(N,)``, if that is to be used
     groups : group effects that are integrated out, or None
     tables : tabulated roughness spectrum and flow curves of the rows, where there are any
-    fingerprint : digest of everything the posterior depends on
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
-    data_fingerprint : digest of the data alone
     settings : values set over the model file, as given
     surface_file : file of the tabulated spectrum, or None
     """
@@ -69,9 +69,6 @@ class Problem:
     groups: CrossedGroups | None
     tables: Tables
     flow_curves: Mapping[str, FlowCurve]
-    fingerprint: str
-    data_fingerprint: str
-    _plan: tuple[InputPlan, ...]
     settings: Mapping[str, str] = field(default_factory=dict)
     surface_file: Path | None = None
 
@@ -89,6 +86,19 @@ class Problem:
     def dimension(self) -> int:
         """Number of free parameters D."""
         return len(self.free)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Digest of everything the posterior depends on; a run is only continued where it is the same."""
+        return digest_model(
+            self.spec, self.forward, (*self.free, *self.fixed), self.conditions, self.observations, self.input_spread,
+            self.groups, self.tables, self.data_fingerprint,
+        )  # fmt: skip
+
+    @cached_property
+    def data_fingerprint(self) -> str:
+        """Digest of the data alone; models are compared where it is the same."""
+        return digest_data(self.dataset, self.observations)
 
     @property
     def observables(self) -> tuple[str, ...]:
@@ -141,7 +151,7 @@ class Problem:
     def log_prior(self, theta: ArrayLike) -> FloatArray:
         """Log prior density per SI unit of each parameter; ``-inf`` outside the support. Shape ``(B,)`` or scalar."""
         batch, single = self._batch(theta)
-        return _unbatch(self.prior_density()(batch), single)
+        return unbatch(self.prior_density()(batch), single)
 
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
         """Log-likelihood of the data, shape ``(B,)``; ``pointwise=True`` gives ``(B, M)``, one for each datum.
@@ -156,7 +166,7 @@ class Problem:
         """
         batch, single = self._batch(theta)
         value = self._likelihood.pointwise(batch) if pointwise else self._likelihood.total(batch)
-        return _unbatch(_impossible(value), single)
+        return unbatch(impossible(value), single)
 
     def log_likelihood_left_out(self, theta: ArrayLike, column: str) -> FloatArray:
         """ln p(all data of one level | all other data, θ) for each level of a grouping column, shape ``(B, levels)``.
@@ -169,12 +179,12 @@ class Problem:
             The model has no data, several observables, or no such column.
         """
         batch, single = self._batch(theta)
-        return _unbatch(_impossible(self._likelihood.left_out(batch, column)), single)
+        return unbatch(impossible(self._likelihood.left_out(batch, column)), single)
 
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
         """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
         batch, single = self._batch(theta)
-        return _unbatch(_impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
+        return unbatch(impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
 
     def prior_transform(self, u: ArrayLike) -> FloatArray:
         """Map the unit hypercube to parameters by the prior quantiles, as nested samplers need it; shape as ``u``."""
@@ -182,7 +192,7 @@ class Problem:
         columns = [
             parameter.prior.quantile(batch[:, i]) for i, parameter in enumerate(self.free) if parameter.prior
         ]
-        return _unbatch(np.stack(columns, axis=-1), single)
+        return unbatch(np.stack(columns, axis=-1), single)
 
     def prior_density(self) -> LogDensity:
         """The prior as a density: it gains a Jacobian when coordinates change."""
@@ -217,7 +227,7 @@ class Problem:
         predicted = self.evaluate(self.inputs(batch, conditions), tables)
         shape = (batch.shape[0], rows.n_rows)
         return {
-            name: _unbatch(np.array(np.broadcast_to(value, shape)), single)
+            name: unbatch(np.array(np.broadcast_to(value, shape)), single)
             for name, value in predicted.items()
         }
 
@@ -276,7 +286,7 @@ class Problem:
         Group effects are drawn anew, for other people and liquids, unless ``effects`` ``(B, G)`` are given.
         """
         batch, single = self._batch(theta)
-        return _unbatch(self._likelihood.draw(batch, rng, effects), single)
+        return unbatch(self._likelihood.draw(batch, rng, effects), single)
 
     def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
         """Draw the effects of all levels of all groups given parameters and data, shape ``(B, G)``.
@@ -373,21 +383,12 @@ class Problem:
     # -- inner parts -------------------------------------------------------------------------------------------------
 
     @cached_property
+    def _plan(self) -> tuple[InputPlan, ...]:
+        return plan_inputs(self.fixed, self.free, self.conditions)
+
+    @cached_property
     def _likelihood(self) -> Likelihood:
         return Likelihood(self)
 
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
-        array = np.asarray(theta, dtype=float)
-        if array.ndim not in (1, 2) or array.shape[-1] != self.dimension:
-            raise InputError(
-                f"theta has shape {array.shape}; expected ({self.dimension},) or (B, {self.dimension}): {', '.join(self.names)}"
-            )
-        return (array[np.newaxis, :], True) if array.ndim == 1 else (array, False)
-
-
-def _unbatch(values: FloatArray, single: bool) -> FloatArray:
-    return values[0] if single else values
-
-
-def _impossible(values: FloatArray) -> FloatArray:
-    return np.where(np.isnan(values) | (values == np.inf), -np.inf, values)
+        return as_batch(theta, self.names)

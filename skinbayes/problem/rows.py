@@ -16,7 +16,7 @@ from skinbayes.problem.covariates import covariate_columns
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.statistics.groups import CrossedGroups
-from skinbayes.statistics.noise import noise_family
+from skinbayes.statistics.noise_families import noise_family
 from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 
 

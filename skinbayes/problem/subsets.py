@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.problem.fingerprint import digest_data, digest_model
-from skinbayes.problem.inputs import Conditions, plan_inputs
+from skinbayes.problem.inputs import Conditions
 from skinbayes.statistics.groups import CrossedGroups
 
 if TYPE_CHECKING:
@@ -72,7 +71,6 @@ def without_level(problem: Problem, column: str, level: str) -> Problem:
     groups = problem.groups
     if groups is not None:
         groups = CrossedGroups.of_labels({name: rows.labels[name] for name in groups.columns})
-    data_digest = digest_data(dataset, observations)
     reduced = replace(
         problem,
         conditions=rows,
@@ -81,9 +79,6 @@ def without_level(problem: Problem, column: str, level: str) -> Problem:
         input_spread=_kept(problem.input_spread, keep),
         groups=groups,
         tables=tables,
-        fingerprint=digest_model(problem.spec, problem.free, problem.fixed, tables, data_digest),
-        data_fingerprint=data_digest,
-        _plan=plan_inputs(problem.fixed, problem.free, rows),
     )
     # prepared for the ranges of all rows, so also for these
     reduced.__dict__["model"] = problem.model

@@ -12,7 +12,7 @@ from skinbayes.plot.numbers import interval, number, percent, quantity
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.rows import effect_draws, group_columns
 from skinbayes.report.words import and_list, plural
-from skinbayes.statistics.noise import noise_family
+from skinbayes.statistics.noise_families import noise_family
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:

@@ -3,7 +3,8 @@
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.families import FAMILIES, Family
 from skinbayes.statistics.groups import CrossedGroups
-from skinbayes.statistics.noise import NOISE_FAMILIES, NoiseFamily, noise_family
+from skinbayes.statistics.noise import NoiseFamily
+from skinbayes.statistics.noise_families import NOISE_FAMILIES, noise_family, register_noise
 from skinbayes.statistics.priors import Prior, make_prior
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 from skinbayes.statistics.two_way import AnalysisOfVariance, crossed_analysis_of_variance
@@ -23,5 +24,6 @@ __all__ = [
     "crossed_analysis_of_variance",
     "make_prior",
     "noise_family",
+    "register_noise",
     "transform_for",
 ]

@@ -17,67 +17,61 @@ student_t      t about f              as gaussian
 log_student_t  ln y t about ln f      as lognormal
 ============== ====================== ==============================================
 
-For Student's t, w is the scale, not the standard deviation; the known spread is widened by the same tails.
+The shape of the distribution – its density and draws at width 1 – is part of the family, see
+:mod:`skinbayes.statistics.noise_families`, where the families of this table are. For Student's t, w is the scale, not the
+standard deviation; the known spread is widened by the same tails.
 In the logarithmic families spread/y is a property of the datum as it was reported: it does not change when
 another value of y is drawn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import inf, log, pi
+from math import inf
 
 import numpy as np
-from scipy import special
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 
-_HALF_LOG_TWO_PI = 0.5 * log(2.0 * pi)
-
-Standardised = Callable[[FloatArray, FloatArray | None], FloatArray]
-
-
-def _normal(z: FloatArray, degrees_of_freedom: FloatArray | None) -> FloatArray:
-    return -0.5 * z * z - _HALF_LOG_TWO_PI
-
-
-def _student(z: FloatArray, degrees_of_freedom: FloatArray | None) -> FloatArray:
-    assert degrees_of_freedom is not None
-    half = 0.5 * degrees_of_freedom
-    normalisation = -special.betaln(half, 0.5) - 0.5 * np.log(degrees_of_freedom)
-    return normalisation - (half + 0.5) * np.log1p(z * z / degrees_of_freedom)
-
 
 @dataclass(frozen=True)
 class NoiseFamily:
-    """One family of scatter. Frozen, picklable.
+    """One family of scatter. Frozen; picklable if its two functions are (functions of a module, no lambdas).
 
     Attributes
     ----------
     name : the key in a model file
     description : one line
-    parameters : names of its parameters: ``scale`` and, for heavy tails, ``degrees_of_freedom``
-    relative : True if ``scale`` is dimensionless (a share of the prediction, or a standard deviation of ln)
+    standard_log_density : of the residual over its width: a function of ``z``, shape ``(B, N)``, dimensionless, and of the
+        shape parameters as keywords, each of which broadcasts to ``(B, N)``; returns ln p(z), shape ``(B, N)``
+    standard_draw : the same distribution: a function of a random generator, of a shape ``(B, N)``, and of the shape
+        parameters; returns draws of ``z``
+    relative : True if ``scale`` is dimensionless (a fraction of the prediction, or a standard deviation of ln)
     logarithmic : True if ln of the data scatters, so that data and predictions must be positive
+    shape_parameters : names of the parameters beside the scale, dimensionless and positive, such as ``degrees_of_freedom``
+    normal : True if the residual is normally distributed; only then can effects of groups be integrated out
     """
 
     name: str
     description: str
-    parameters: tuple[str, ...]
+    standard_log_density: Callable[..., FloatArray]
+    standard_draw: Callable[..., FloatArray]
     relative: bool
     logarithmic: bool
+    shape_parameters: tuple[str, ...] = ()
+    normal: bool = False
 
     @property
-    def heavy_tailed(self) -> bool:
-        """True if the family has ``degrees_of_freedom``."""
-        return "degrees_of_freedom" in self.parameters
+    def parameters(self) -> tuple[str, ...]:
+        """Names of all its parameters: ``scale`` and those of the shape."""
+        return ("scale", *self.shape_parameters)
 
     @property
     def closed_form_groups(self) -> bool:
         """True if effects that groups of data share can be integrated out: normal, with a width that f does not set."""
-        return not self.heavy_tailed and (self.logarithmic or not self.relative)
+        return self.normal and (self.logarithmic or not self.relative)
 
     def residual(self, observed: ArrayLike, predicted: ArrayLike) -> FloatArray:
         """What scatters: y − f, or ln y − ln f in the logarithmic families; NaN where that is not defined.
@@ -144,8 +138,8 @@ class NoiseFamily:
         predicted: ArrayLike,
         scale: ArrayLike,
         spread: ArrayLike = 0.0,
-        degrees_of_freedom: ArrayLike | None = None,
         discrepancy: ArrayLike = 0.0,
+        **shape: ArrayLike,
     ) -> FloatArray:
         """Pointwise log-density of data.
 
@@ -153,7 +147,8 @@ class NoiseFamily:
         ----------
         observed : data y, shape ``(N,)``, unit of the observable
         predicted, scale, spread, discrepancy : see :meth:`width`
-        degrees_of_freedom : of Student's t, broadcasts to ``(B, N)``, dimensionless, > 0
+        shape : the shape parameters of the family, such as ``degrees_of_freedom``; each broadcasts to ``(B, N)``,
+            dimensionless, > 0
 
         Returns
         -------
@@ -163,25 +158,25 @@ class NoiseFamily:
         Raises
         ------
         TypeError
-            if ``degrees_of_freedom`` is missing for a family that has it
+            if a shape parameter of the family is missing, or one is given that it does not have
 
         Examples
         --------
+        >>> from skinbayes.statistics import noise_family
         >>> value = noise_family("gaussian").log_density([1.0], [[1.0], [3.0]], 1.0)
         >>> print(value.round(4).tolist())
         [[-0.9189], [-2.9189]]
         """
         y, f = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
-        tails = self._tails(degrees_of_freedom)
+        known = self._shape(shape)
         with np.errstate(all="ignore"):
             w = self.width(f, scale, spread, discrepancy, y)
-            kernel = _normal if tails is None else _student
             if self.logarithmic:
                 log_y = np.log(y)
-                value = kernel((log_y - np.log(f)) / w, tails) - np.log(w) - log_y
+                value = self.standard_log_density((log_y - np.log(f)) / w, **known) - np.log(w) - log_y
                 possible = (f > 0.0) & (y > 0.0)
             else:
-                value = kernel((y - f) / w, tails) - np.log(w)
+                value = self.standard_log_density((y - f) / w, **known) - np.log(w)
                 possible = np.isfinite(f) & np.isfinite(y)
             possible = possible & (w > 0.0) & (w < inf) & (value < inf)
         return np.where(possible, value, -inf)
@@ -192,9 +187,9 @@ class NoiseFamily:
         predicted: ArrayLike,
         scale: ArrayLike,
         spread: ArrayLike = 0.0,
-        degrees_of_freedom: ArrayLike | None = None,
         discrepancy: ArrayLike = 0.0,
         observed: ArrayLike | None = None,
+        **shape: ArrayLike,
     ) -> FloatArray:
         """Data drawn about predictions.
 
@@ -202,17 +197,15 @@ class NoiseFamily:
         ----------
         rng : source of randomness
         predicted, scale, spread, discrepancy, observed : see :meth:`width`
-        degrees_of_freedom : see :meth:`log_density`
+        shape : see :meth:`log_density`
 
         Returns
         -------
         draws, shape ``(B, N)``, unit of the observable; NaN where :meth:`log_density` is −inf for all data
         """
         f = np.asarray(predicted, dtype=float)
-        tails = self._tails(degrees_of_freedom)
         w = self.width(f, scale, spread, discrepancy, observed)
-        shape = w.shape
-        z = rng.standard_normal(shape) if tails is None else rng.standard_t(np.broadcast_to(tails, shape))
+        z = self.standard_draw(rng, w.shape, **self._shape(shape))
         with np.errstate(all="ignore"):
             if self.logarithmic:
                 return np.where(f > 0.0, f * np.exp(w * z), np.nan)
@@ -239,52 +232,12 @@ class NoiseFamily:
                 f"Row {row + 1} of the data is {y[row]:g}; noise '{self.name}' expects {expected}."
             )
 
-    def _tails(self, degrees_of_freedom: ArrayLike | None) -> FloatArray | None:
-        if not self.heavy_tailed:
-            return None
-        if degrees_of_freedom is None:
-            raise TypeError(f"Noise '{self.name}' needs degrees_of_freedom.")
-        tails = np.asarray(degrees_of_freedom, dtype=float)
-        return np.where(tails > 0.0, tails, np.nan)
-
-
-_ALL = (
-    NoiseFamily("gaussian", "normal scatter of the same size everywhere", ("scale",), False, False),
-    NoiseFamily("relative", "normal scatter in proportion to the prediction", ("scale",), True, False),
-    NoiseFamily("lognormal", "normal scatter of ln; scale is its standard deviation", ("scale",), True, True),
-    NoiseFamily(
-        "student_t",
-        "Student's t of the same scale everywhere; tolerates outliers",
-        ("scale", "degrees_of_freedom"),
-        False,
-        False,
-    ),
-    NoiseFamily(
-        "log_student_t",
-        "Student's t of ln; positive data with outliers",
-        ("scale", "degrees_of_freedom"),
-        True,
-        True,
-    ),
-)
-
-NOISE_FAMILIES: dict[str, NoiseFamily] = {family.name: family for family in _ALL}
-"""Every noise family by the name used in model files."""
-
-
-def noise_family(name: str) -> NoiseFamily:
-    """The noise family called ``name``.
-
-    Raises
-    ------
-    InputError
-        if there is none of that name
-
-    Examples
-    --------
-    >>> noise_family("student_t").parameters
-    ('scale', 'degrees_of_freedom')
-    """
-    if name not in NOISE_FAMILIES:
-        raise InputError(f"There is no noise family '{name}'. Known: {', '.join(NOISE_FAMILIES)}.")
-    return NOISE_FAMILIES[name]
+    def _shape(self, given: Mapping[str, ArrayLike]) -> dict[str, FloatArray]:
+        """The shape parameters as arrays, NaN where they are not positive."""
+        if set(given) != set(self.shape_parameters):
+            raise TypeError(
+                f"Noise '{self.name}' needs {' and '.join(self.shape_parameters) or 'no shape parameter'}; "
+                f"got {', '.join(given) or 'none'}."
+            )
+        arrays = {name: np.asarray(value, dtype=float) for name, value in given.items()}
+        return {name: np.where(value > 0.0, value, np.nan) for name, value in arrays.items()}

@@ -16,7 +16,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "errors": set(),
     "arrays": set(),
     "constants": set(),
-    "vocabulary": set(),
+    "vocabulary": {"errors"},
     "units": {"errors", "arrays", "vocabulary", "constants"},
     # physics
     "roughness": {"errors", "arrays", "constants"},
@@ -40,7 +40,7 @@ MAY_KNOW: dict[str, set[str]] = {
                "skinbayes"},
     "cli": {*WORDS, "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
     # the shop window names its goods but opens them when asked
-    "skinbayes": {"errors", "files", "problem", "fit", "comparison"},
+    "skinbayes": {"errors", "vocabulary", "statistics", "files", "problem", "fit", "comparison"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
 

@@ -12,7 +12,7 @@ from source_tree import ROOT
 
 import skinbayes as sb
 from skinbayes.files import modelschema
-from skinbayes.files.modelfile import NOISE_PARAMETERS
+from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.forward import forward_models
 from skinbayes.roughness import surfaces
 from skinbayes.statistics import FAMILIES, NOISE_FAMILIES
@@ -74,7 +74,7 @@ def test_priors() -> None:
 
 
 def test_noise() -> None:
-    assert sorted(names("`[noise]`")) == sorted(["family", *NOISE_PARAMETERS])
+    assert sorted(names("`[noise]`")) == sorted(["family", *noise_parameter_names()])
     rows = first_column("`[noise]`", 1)
     assert [row[0].strip("`") for row in rows] == list(NOISE_FAMILIES)
     for name, _, _, unit in rows:
@@ -103,7 +103,7 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
         *FAMILIES,
         *NOISE_FAMILIES,
         *surfaces.SURFACES,
-        *NOISE_PARAMETERS,
+        *noise_parameter_names(),
         *forward_models(),
     }
     for block in SECTION_OF:

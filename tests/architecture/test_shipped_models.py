@@ -11,7 +11,8 @@ from source_tree import ROOT
 
 import skinbayes as sb
 from skinbayes.files.locate import shipped_folder, shipped_names
-from skinbayes.files.modelfile import NOISE_PARAMETERS, load_model
+from skinbayes.files.modelfile import load_model
+from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.files.provenance import load_provenance
 from skinbayes.forward import forward_models
 from skinbayes.vocabulary import LABELS, QUANTITIES
@@ -60,7 +61,7 @@ def test_its_names_are_words_of_the_vocabulary(name: str) -> None:
     noise, several = content.get("noise", {}), content.get("data", {}).get("observables")
     assert several is None or set(noise) == set(several)
     for block in noise.values() if several else [noise]:
-        assert set(block) <= {"family", *NOISE_PARAMETERS}
+        assert set(block) <= {"family", *noise_parameter_names()}
     for entry in content["parameters"].values():
         assert not isinstance(entry, dict) or entry.get("by", "state") in LABELS
     derived = {n for model in forward_models().values() for n in model.derived_names}

@@ -46,10 +46,10 @@ def possible_draws(problem: Problem, rng: np.random.Generator, count: int) -> np
     return draws[:count]
 
 
-def with_data(maker: Problem, data: np.ndarray, name: str) -> Problem:
+def with_data(maker: Problem, data: np.ndarray) -> Problem:
     """The problem with other data of its one observable at the same rows."""
     (observation,) = maker.observations
-    problem = replace(maker, observations=(replace(observation, values=data),), fingerprint=name)
+    problem = replace(maker, observations=(replace(observation, values=data),))
     # what is prepared depends on priors and rows only, so that one serves all
     problem.__dict__["model"] = maker.model
     return problem
@@ -62,7 +62,7 @@ def recover(maker: Problem, simulations: int, seed: int) -> Recovered:
     transform = maker.target().transform
     levels, means, widths, sizes = [], [], [], []
     for i, truth in enumerate(transform.forward(truths)):
-        problem = with_data(maker, maker.simulate(truths[i], rng), f"simulation {i}")
+        problem = with_data(maker, maker.simulate(truths[i], rng))
         found = importance_sample(problem, rng)
         mean, width = found.moments()
         levels.append(found.levels(truth))

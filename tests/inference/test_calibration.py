@@ -38,7 +38,7 @@ def test_ranks_are_uniform_and_intervals_cover(build, tmp_path: Path) -> None:
         truth = problem.draw_prior(rng, 1)[0]
         data = problem.simulate(truth, rng)
         fit = sample(
-            with_data(problem, data, f"simulation {i}"),
+            with_data(problem, data),
             seed=i,
             ess=400,
             walkers=32,
@@ -66,7 +66,7 @@ def test_few_simulations(tmp_path: Path) -> None:
         truth = problem.draw_prior(rng, 1)[0]
         data = problem.simulate(truth, rng)
         fit = sample(
-            with_data(problem, data, f"simulation {i}"),
+            with_data(problem, data),
             seed=i,
             ess=200,
             walkers=32,

@@ -9,7 +9,7 @@ import pytest
 from scipy import integrate, stats
 
 from skinbayes.errors import InputError
-from skinbayes.statistics.noise import NOISE_FAMILIES, noise_family
+from skinbayes.statistics.noise_families import NOISE_FAMILIES, noise_family
 
 OBSERVED = np.array([0.3, 1.4, 2.2])
 PREDICTED = np.array([[0.35, 1.2, 2.0], [0.2, 1.9, 3.0]])
@@ -17,6 +17,11 @@ SPREAD = np.array([0.05, 0.0, 0.3])
 SCALE = np.array([[0.2], [0.4]])
 DISCREPANCY = np.array([[0.1], [0.25]])
 TAILS = np.array([[3.0], [7.0]])
+
+
+def shape(family, degrees_of_freedom=TAILS):
+    """The shape parameters of a family, as keywords."""
+    return {"degrees_of_freedom": degrees_of_freedom} if family.shape_parameters else {}
 
 
 def reference(name, predicted, scale, spread, tails, discrepancy, observed):
@@ -52,7 +57,7 @@ class LogT:
 @pytest.mark.parametrize("name", NOISE_FAMILIES)
 def test_density_agrees_with_scipy(name):
     family = noise_family(name)
-    value = family.log_density(OBSERVED, PREDICTED, SCALE, SPREAD, TAILS, DISCREPANCY)
+    value = family.log_density(OBSERVED, PREDICTED, SCALE, SPREAD, DISCREPANCY, **shape(family))
     assert value.shape == (2, 3)
     for b in range(2):
         for n in range(3):
@@ -72,7 +77,9 @@ def test_density_integrates_to_one(name, prediction):
     def density(t):
         y = np.exp(t) if family.logarithmic else t
         spread = share * y if family.logarithmic else share
-        value = np.exp(float(family.log_density([y], [[prediction]], 0.3, [spread], 5.0, 0.15)[0, 0]))
+        value = np.exp(
+            float(family.log_density([y], [[prediction]], 0.3, [spread], 0.15, **shape(family, 5.0))[0, 0])
+        )
         return value * y if family.logarithmic else value
 
     centre = np.log(prediction) if family.logarithmic else prediction
@@ -86,7 +93,9 @@ def test_draws_follow_the_density(name):
     family = noise_family(name)
     observed, spread = 1.1, 0.2
     predicted = np.full((3000, 1), 0.9)
-    draws = family.draw(np.random.default_rng(8), predicted, 0.25, [spread], 4.0, 0.1, observed=[observed])
+    draws = family.draw(
+        np.random.default_rng(8), predicted, 0.25, [spread], 0.1, observed=[observed], **shape(family, 4.0)
+    )
     assert draws.shape == (3000, 1)
     expected = reference(name, 0.9, 0.25, spread, 4.0, 0.1, observed)
     assert stats.kstest(draws[:, 0], expected.cdf).pvalue > 1e-3
@@ -95,11 +104,12 @@ def test_draws_follow_the_density(name):
 @pytest.mark.parametrize("name", NOISE_FAMILIES)
 def test_parameter_vectors_do_not_mix(name):
     family = noise_family(name)
-    together = family.log_density(OBSERVED, PREDICTED, SCALE, SPREAD, TAILS, DISCREPANCY)
+    together = family.log_density(OBSERVED, PREDICTED, SCALE, SPREAD, DISCREPANCY, **shape(family))
     for b in range(2):
         one = family.log_density(
-            OBSERVED, PREDICTED[b : b + 1], SCALE[b : b + 1], SPREAD, TAILS[b : b + 1], DISCREPANCY[b : b + 1]
-        )
+            OBSERVED, PREDICTED[b : b + 1], SCALE[b : b + 1], SPREAD, DISCREPANCY[b : b + 1],
+            **shape(family, TAILS[b : b + 1]),
+        )  # fmt: skip
         assert one[0].tolist() == together[b].tolist()
 
 
@@ -118,23 +128,25 @@ def test_many_degrees_of_freedom_are_normal(name):
 def test_impossible_is_minus_infinity(name):
     family = noise_family(name)
     predicted = np.array([[nan, inf, -inf, 0.5]])
-    assert family.log_density([1.0] * 4, predicted, 0.1, 0.0, 4.0)[0, :3].tolist() == [-inf] * 3
-    assert np.isfinite(family.log_density([1.0] * 4, predicted, 0.1, 0.0, 4.0)[0, 3])
+    assert family.log_density([1.0] * 4, predicted, 0.1, **shape(family, 4.0))[0, :3].tolist() == [-inf] * 3
+    assert np.isfinite(family.log_density([1.0] * 4, predicted, 0.1, **shape(family, 4.0))[0, 3])
     for scale in (0.0, -0.1, nan, inf):
-        assert family.log_density([1.0], [[1.0]], scale, 0.0, 4.0).tolist() == [[-inf]]
+        assert family.log_density([1.0], [[1.0]], scale, **shape(family, 4.0)).tolist() == [[-inf]]
     # a known spread makes an exact model possible
-    assert np.isfinite(family.log_density([1.0], [[1.0]], 0.0, [0.1], 4.0)).all()
-    if family.heavy_tailed:
+    assert np.isfinite(family.log_density([1.0], [[1.0]], 0.0, [0.1], **shape(family, 4.0))).all()
+    if family.shape_parameters:
         for tails in (0.0, -1.0, nan):
-            assert family.log_density([1.0], [[1.0]], 0.1, 0.0, tails).tolist() == [[-inf]]
+            assert family.log_density([1.0], [[1.0]], 0.1, **shape(family, tails)).tolist() == [[-inf]]
 
 
 @pytest.mark.parametrize("name", ["lognormal", "log_student_t"])
 def test_logarithmic_families_need_positive_numbers(name):
     family = noise_family(name)
-    value = family.log_density([1.0, 1.0, -1.0, 0.0], [[0.0, -1.0, 1.0, 1.0]], 0.1, [0.1] * 4, 4.0)
+    value = family.log_density(
+        [1.0, 1.0, -1.0, 0.0], [[0.0, -1.0, 1.0, 1.0]], 0.1, [0.1] * 4, **shape(family, 4.0)
+    )
     assert value.tolist() == [[-inf] * 4]
-    assert np.isnan(family.draw(np.random.default_rng(0), [[-1.0]], 0.1, 0.0, 4.0)).all()
+    assert np.isnan(family.draw(np.random.default_rng(0), [[-1.0]], 0.1, **shape(family, 4.0))).all()
     with pytest.raises(InputError, match="Row 2 of the data is -1"):
         family.check_observed([1.0, -1.0])
 
@@ -150,8 +162,8 @@ def test_relative_scale_is_free_of_units():
     """In another unit of the observable the log-density changes by ln of that unit only."""
     for name, family in NOISE_FAMILIES.items():
         if family.relative:
-            small = family.log_density(OBSERVED, PREDICTED, SCALE, SPREAD, TAILS)
-            large = family.log_density(1e3 * OBSERVED, 1e3 * PREDICTED, SCALE, 1e3 * SPREAD, TAILS)
+            small = family.log_density(OBSERVED, PREDICTED, SCALE, SPREAD, **shape(family))
+            large = family.log_density(1e3 * OBSERVED, 1e3 * PREDICTED, SCALE, 1e3 * SPREAD, **shape(family))
             np.testing.assert_allclose(large, small - np.log(1e3), rtol=1e-10, err_msg=name)
 
 
@@ -166,4 +178,4 @@ def test_unknown_names_and_missing_arguments():
 def test_pickles(name):
     family = noise_family(name)
     assert pickle.loads(pickle.dumps(family)) == family
-    assert ("degrees_of_freedom" in family.parameters) == family.heavy_tailed
+    assert family.normal == (not family.shape_parameters)

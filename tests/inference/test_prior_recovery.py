@@ -80,7 +80,7 @@ def test_known_truths_are_covered(tmp_path: Path) -> None:
     truth = np.array([12e6, 6e6, 0.25])
     for seed in (1, 2, 3):
         data = problem.simulate(truth, np.random.default_rng(seed))
-        fit = sample(with_data(problem, data, f"simulated {seed}"), seed=seed, ess=1000, walkers=32)
+        fit = sample(with_data(problem, data), seed=seed, ess=1000, walkers=32)
         for name, value in zip(problem.names, truth, strict=True):
             low, high = np.quantile(fit.draws(name), [0.0005, 0.9995])
             assert low < value < high, f"{name}, seed {seed}"

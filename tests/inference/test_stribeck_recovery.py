@@ -92,7 +92,7 @@ def test_the_sampler_finds_the_posterior_of_a_simulation(name: str, small: Probl
     """Ensembles of walkers and importance sampling share the density and nothing else."""
     maker = small if name == "small" else load_problem(name)
     rng = np.random.default_rng(25)
-    problem = with_data(maker, maker.simulate(possible_draws(maker, rng, 1)[0], rng), "simulated")
+    problem = with_data(maker, maker.simulate(possible_draws(maker, rng, 1)[0], rng))
     weighted = importance_sample(problem, rng)
     options = SamplerOptions(
         seed=26, ess=400, ensembles=2, walkers=40, r_hat=1.02, steps_over_tau=30, max_steps=4000
@@ -110,7 +110,7 @@ def test_the_sampler_finds_the_posterior_of_a_simulation(name: str, small: Probl
 def test_simulations_share_the_table_and_nothing_else(small: Problem) -> None:
     rng = np.random.default_rng(23)
     truth = possible_draws(small, rng, 1)[0]
-    first, second = (with_data(small, small.simulate(truth, rng), name) for name in "ab")
+    first, second = (with_data(small, small.simulate(truth, rng)) for _ in "ab")
     assert first.model is second.model is small.model and "table of films" in small.model.accuracy
     assert_array_equal(first.predict_data(truth), second.predict_data(truth))
     at_truth = [problem.log_likelihood(truth) for problem in (small, first, second)]
