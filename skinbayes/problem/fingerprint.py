@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ def digest_model(
     return _digest(
         {
             "version": __version__,
-            "forward": [forward.name, f"{forward.evaluate.__module__}.{forward.evaluate.__qualname__}"],
+            "forward": [forward.name, _function(forward.evaluate)],
             "noise": [_noise(o.noise) for o in observations],
             "covariates": [[c.name, c.column, c.acts_on, repr(c.reference)] for c in spec.covariates],
             # the order of free parameters is that of the coordinates of a run
@@ -70,8 +71,14 @@ def digest_model(
 
 
 def _noise(family: NoiseFamily) -> list[str]:
-    density = family.standard_log_density
-    return [family.name, f"{density.__module__}.{density.__qualname__}"]
+    return [family.name, _function(family.standard_log_density)]
+
+
+def _function(function: Callable[..., Any]) -> str:
+    """Where a function is defined, and with which options it is called."""
+    if isinstance(function, partial):
+        return f"{_function(function.func)} {function.args!r} {function.keywords!r}"
+    return f"{function.__module__}.{function.__qualname__}"
 
 
 def _digest(content: Mapping[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -91,3 +92,15 @@ def test_a_run_of_other_priors_is_not_continued(tmp_path):
     sample(problem, directory=tmp_path / "run", **options)
     with pytest.raises(FingerprintMismatch, match="another model, data, prior"):
         sample(other_prior(problem), directory=tmp_path / "run", resume=True, **options)
+
+
+@pytest.mark.parametrize("name", forward_models())
+def test_every_forward_model_has_an_identity(name, tmp_path):
+    """Whatever way its function is made, it is told from the others and is the same in another process."""
+    problem = two_parameters(tmp_path)
+    fingerprint = replace(problem, forward=forward_models()[name]).fingerprint
+    assert (fingerprint == problem.fingerprint) == (name == "friction")
+    assert (
+        pickle.loads(pickle.dumps(replace(problem, forward=forward_models()[name]))).fingerprint
+        == fingerprint
+    )
