@@ -37,7 +37,7 @@ def checked(path: Path) -> str:
     DamagedFile
         A bit of it, or of the seal, is not what was written, or it was never sealed.
     OSError
-        It cannot be read.
+        It cannot be read; nothing is known about its content.
     """
     if not path.is_file():
         raise DamagedFile("no ordinary file")
@@ -81,8 +81,8 @@ def read_note(path: Path) -> dict[str, Any]:
     ------
     DamagedFile
         It is something else, or its content does not fit its checksum.
-    FileNotFoundError
-        There is no such file.
+    FileNotFoundError, PermissionError
+        There is no such file, or it must not be read: nothing is known about its content.
     """
     if path.exists() and not path.is_file():
         raise DamagedFile("no ordinary file")
@@ -91,8 +91,10 @@ def read_note(path: Path) -> dict[str, Any]:
             text = file.read(LARGEST_NOTE + 1)
         note = json.loads(text) if len(text) <= LARGEST_NOTE else None
         fits = isinstance(note, dict) and note.pop("sha256", None) == content_digest(note)
-    except FileNotFoundError:
+    except (FileNotFoundError, PermissionError):
         raise
+    except NotADirectoryError as error:
+        raise FileNotFoundError(error) from None
     except (OSError, ValueError) as error:
         raise DamagedFile(f"{error}") from None
     except RecursionError:

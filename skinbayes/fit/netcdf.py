@@ -56,9 +56,9 @@ def result_image(groups: Mapping[str, xarray.Dataset], provenance: Mapping[str, 
 
     image = io.BytesIO()
     with h5netcdf.File(image, "w") as file:
-        file.attrs["skinbayes"] = json.dumps(provenance)
         for name, group in groups.items():
-            group.dump_to_store(H5NetCDFStore(file.create_group(name)))
+            note = {"skinbayes": json.dumps(provenance)} if name == "posterior" else {}
+            group.assign_attrs(note).dump_to_store(H5NetCDFStore(file.create_group(name)))
     return sealed(image.getvalue())
 
 
@@ -69,6 +69,8 @@ def read_result(file: Path) -> tuple[dict[str, xarray.Dataset], dict[str, Any], 
     ------
     DamagedFile
         It is not what was written, or holds something else than a result.
+    PermissionError
+        It must not be read.
     """
     import xarray
 
@@ -76,8 +78,9 @@ def read_result(file: Path) -> tuple[dict[str, xarray.Dataset], dict[str, Any], 
         digest = checked(file)
         names, provenance = _looked_through(file)
         groups = {name: xarray.load_dataset(file, group=name, engine="h5netcdf") for name in names}
+        groups["posterior"].attrs.pop("skinbayes")
         _require_consistent(groups, provenance)
-    except DamagedFile:
+    except (DamagedFile, PermissionError):
         raise
     except Exception as error:  # the libraries raise errors of many types about a file that was made to confuse them
         raise DamagedFile(f"{error}") from error
@@ -100,7 +103,7 @@ def _looked_through(path: Path) -> tuple[list[str], dict[str, Any]]:
                 raise DamagedFile(f"'{name:.80}' is no group of a result")
             for key in group:
                 _require_stored(group, key)
-        provenance = json.loads(file.attrs["skinbayes"])
+        provenance = json.loads(file["posterior"].attrs["skinbayes"])
     return names, provenance
 
 

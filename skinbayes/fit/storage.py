@@ -87,6 +87,8 @@ def load_fit(path: str | Path) -> Fit:
         groups, provenance, digest = read_result(file)
     except DamagedFile as error:
         raise InputError(f"{file}: damaged, or not a result written by skinbayes ({error}){steps}") from None
+    except PermissionError as error:
+        raise InputError(f"{file}: cannot be read ({error.strerror})") from None
     if run is not None and manifest is not None:
         if RESULT not in manifest.files:
             raise InputError(f"{run}: no finished result found{_unfinished(run)}")
@@ -111,11 +113,14 @@ def _undamaged(run: Path) -> Manifest:
     alone = f"The numbers alone can be read from {run / RESULT}"
     try:
         manifest = read_manifest(run)
+        wrong = {} if manifest is None else trouble(run, manifest)
     except DamagedFile as error:
         raise InputError(f"{run / RUN}: damaged ({error}); {_again(run)}. {alone}") from None
+    except PermissionError as error:
+        raise InputError(f"{error.filename}: cannot be read ({error.strerror})") from None
     if manifest is None:
         raise InputError(f"{run / RUN}: missing; {_again(run)}. {alone}")
-    for name, what in trouble(run, manifest).items():
+    for name, what in wrong.items():
         raise InputError(f"{run / name}: {what}. Put the original back, or {_again(run)}. {alone}")
     return manifest
 

@@ -68,6 +68,8 @@ def read_segment(path: Path, identity: str, before: list[Block] | None) -> list[
         It is not what was written, or does not follow ``before``.
     OtherRun
         It is whole, but of a run with another identity.
+    PermissionError
+        It must not be read.
     """
     import h5py
 
@@ -76,7 +78,7 @@ def read_segment(path: Path, identity: str, before: list[Block] | None) -> list[
         with h5py.File(path, "r", locking=False) as file:
             found, follows = str(file.attrs["identity"]), str(file.attrs["follows"])
             arrays = _read(file) if found == identity and follows == _digest(before) else {}
-    except DamagedFile:
+    except (DamagedFile, PermissionError):
         raise
     except Exception as error:  # HDF5 raises errors of many types about a file that was made to confuse it
         raise DamagedFile(f"{error}") from error

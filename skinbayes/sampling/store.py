@@ -115,6 +115,8 @@ class SampleStore:
             stored = stored_identity(self.path)
         except DamagedFile as error:
             stored, trouble = None, f"damaged ({error})"
+        except PermissionError as error:
+            raise InputError(f"{header}: cannot be read ({error.strerror}).") from error
         if (segments or stored is not None) and not self._resume:
             raise InputError(
                 f"{self.path}: holds a run of {len(segments)} blocks of steps already. "
@@ -175,6 +177,8 @@ class SampleStore:
                 trouble = "missing"
             except DamagedFile as error:
                 trouble = f"damaged ({error})"
+            except PermissionError as error:
+                raise InputError(f"{path}: cannot be read ({error.strerror}).") from error
             except OtherRun:
                 raise FingerprintMismatch(
                     f"{path}: belongs to another run than the steps beside it. Put it elsewhere and resume: "
