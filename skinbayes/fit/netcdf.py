@@ -141,6 +141,8 @@ def _require_consistent(groups: Mapping[str, xarray.Dataset], provenance: Any) -
             name, _, level = label.partition("[")
             found = groups[group][name]
             extra = {str(d): level.removesuffix("]") for d in found.dims if d not in ("chain", "draw")}
+            if len(extra) != bool(level):
+                raise DamagedFile(f"'{group}/{label:.80}' has other dimensions than its name says")
             _require_finite(found.sel(extra), f"{group}/{label}", ("chain", "draw"))
     if groups["sample_stats"]["lp"].shape != (posterior.sizes["chain"], posterior.sizes["draw"]):
         raise DamagedFile("'sample_stats/lp' has not one value for each draw")
