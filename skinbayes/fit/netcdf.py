@@ -151,7 +151,8 @@ def _require_consistent(groups: Mapping[str, xarray.Dataset], provenance: Any) -
         _require_finite(rows, f"observed_data/{observable}", ("row",))
         for group in ("posterior_predictive", "prior_predictive", "log_likelihood"):
             found = groups[group][observable]
-            if found.dims != ("chain", "draw", "row") or found.sizes["row"] != rows.size or found.dtype.kind != "f":
+            fits = found.dims == ("chain", "draw", "row") and found.sizes["row"] == rows.size
+            if not fits or found.dtype.kind != "f":
                 raise DamagedFile(f"'{group}/{observable}' has not one number for each draw and row")
 
 

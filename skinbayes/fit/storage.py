@@ -82,7 +82,7 @@ def load_fit(path: str | Path) -> Fit:
     if not file.is_file():
         raise InputError(f"{path}: no result found ({file.name} is missing){_unfinished(path)}")
     manifest = None if run is None else _undamaged(run)
-    steps = "" if run is None or not (run / STEPS).is_dir() else f". The steps are kept: {_again(run)} from them"
+    steps = f". The steps are kept: {_again(run)} from them" if run and (run / STEPS).is_dir() else ""
     try:
         groups, provenance, digest = read_result(file)
     except DamagedFile as error:
@@ -101,7 +101,9 @@ def load_fit(path: str | Path) -> Fit:
 
 
 def _unfinished(path: Path) -> str:
-    return "; the run is not finished: continue it with 'skinbayes fit ... --resume'" if (path / STEPS).is_dir() else ""
+    if not (path / STEPS).is_dir():
+        return ""
+    return "; the run is not finished: continue it with 'skinbayes fit ... --resume'"
 
 
 def _again(run: Path) -> str:

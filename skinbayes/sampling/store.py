@@ -139,9 +139,7 @@ class SampleStore:
     def append(self, blocks: list[Block]) -> None:
         """Add the next block of every ensemble; on return it is on disk."""
         before = self._rounds[-1] if self._rounds else None
-        self._publish(
-            self._segment(len(self._rounds) + 1), segment_image(blocks, self._digest, before)
-        )
+        self._publish(self._segment(len(self._rounds) + 1), segment_image(blocks, self._digest, before))
         self._rounds.append(blocks)
 
     def _segment(self, number: int) -> Path:
@@ -156,7 +154,8 @@ class SampleStore:
         differing = [key for key in {**stored, **wanted} if stored.get(key) != wanted.get(key)]
         if differing:
             parts = "; ".join(
-                f"{key} is {stored.get(key)!r:.200} there and {wanted.get(key)!r:.200} here" for key in differing
+                f"{key} is {stored.get(key)!r:.200} there and {wanted.get(key)!r:.200} here"
+                for key in differing
             )
             raise FingerprintMismatch(
                 f"{self.path}: holds a run that cannot be continued with these settings: {parts}. "

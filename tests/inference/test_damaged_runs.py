@@ -82,9 +82,7 @@ def test_every_bit_counts(run: Path, whole: Fit, name: str, seed: int) -> None:
     assert met["refused"] >= 280 and (not met["harmless"] or name == "run.json")
 
 
-@pytest.mark.parametrize(
-    "flips", [20, pytest.param(300, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("flips", [20, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ["header.json", "segment-000002.h5", "segment-000003.h5"])
 def test_damaged_steps_are_made_again(problem: Problem, run: Path, name: str, flips: int) -> None:
     from skinbayes.sampling.ensembles import draw_identity
@@ -216,7 +214,9 @@ def test_a_model_that_cannot_be_built_again_is_told(run: Path, whole: Fit, tmp_p
 # -- notes that were made to confuse ------------------------------------------------------------------------------------
 
 
-NOT_A_NOTE = ["", "{", "[]", "null", "3", "[" * 100_000, '{"a":' * 100_000, "\x00", "9" * 10_000, '{"model": "two"}']
+NOT_A_NOTE = [
+    "", "{", "[]", "null", "3", "[" * 100_000, '{"a":' * 100_000, "\x00", "9" * 10_000, '{"model": "two"}',
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("content", NOT_A_NOTE)

@@ -279,7 +279,7 @@ CRAFTED = {
     "group": lambda file: (other("positions")(file), file.create_group("positions")),
     "no identity": lambda file: file.attrs.__delitem__("identity"),
     "numbers for identity": lambda file: file.attrs.__setitem__("follows", np.zeros(3)),
-    "link": lambda file: (other("positions")(file), file.__setitem__("positions", h5py.ExternalLink("a", "b"))),
+    "link": lambda file: (other("positions")(file), file.__setitem__("positions", h5py.SoftLink("/a"))),
 }
 
 
