@@ -167,8 +167,9 @@ def claim_run(directory: Path, problem: Problem, resume: bool) -> Manifest:
                     f"{problem.spec.path}: yardsticks: no file {path}; expected a model file to compare with"
                 )
         wrong = {} if stored is None or not resume else trouble(directory, stored)
-        for name, what in wrong.items():
-            _warn(f"{directory / name}: {what}; written again from the model and data that were given")
+        for name in wrong:
+            if not (directory / name).exists():
+                _warn(f"{directory / name}: missing; written again from the model and data that were given")
         if stored is not None and resume and not wrong:
             return stored
         directory.mkdir(parents=True, exist_ok=True)
@@ -204,7 +205,10 @@ def _held(directory: Path, problem: Problem, resume: bool) -> Manifest | None:
         )
     if damage is not None:
         if not resume or found is None:
-            raise InputError(f"{directory / RUN}: damaged ({damage}); give another folder")
+            raise InputError(
+                f"{directory / RUN}: damaged ({damage}), and the steps beside it do not tell whose run it was; "
+                "give another folder"
+            )
         put_aside(directory / RUN)
         _warn(f"{directory / RUN}: damaged ({damage}); written again")
     return stored
@@ -247,7 +251,11 @@ def _copy(source: Path, copy: Path) -> str:
     content = source.read_bytes()
     # the user may point at the copies of an earlier run in this very directory
     if copy.exists() and not copy.samefile(source) and copy.read_bytes() != content:
-        put_aside(copy)
+        aside = put_aside(copy)
+        _warn(
+            f"{copy}: damaged, or changed since the run was made; renamed to {aside.name}, and written again "
+            "from the model and data that were given"
+        )
     return _write(copy, content)
 
 
