@@ -13,3 +13,10 @@ class InputError(ValueError):
 
 class FingerprintMismatch(InputError):
     """A stored run belongs to another model, data set, prior or sampler setting than the one given."""
+
+
+class RepairWarning(UserWarning):
+    """Something in a stored run was damaged or missing, and what was done about it.
+
+    The run goes on; the command line prints the message as it is on standard error.
+    """

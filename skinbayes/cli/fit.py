@@ -129,7 +129,7 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
 
 
 def _print(result: Fit, directory: Path, page: Path | None) -> None:
-    from skinbayes.fit.storage import SUMMARY
+    from skinbayes.fit.manifest import SUMMARY
     from skinbayes.units import format_quantity
 
     title = result.provenance["title"] + ("" if result.converged else "   – NOT CONVERGED")

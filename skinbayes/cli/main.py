@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
 
 import click
 
@@ -19,7 +22,7 @@ from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
 from skinbayes.cli.template import template
-from skinbayes.errors import InputError
+from skinbayes.errors import InputError, RepairWarning
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 """Set to 1 unless the user set them: the matrices are small, and threads of linear algebra stand in the way of the worker
@@ -55,9 +58,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
     try:
-        status = cli.main(
-            args=None if arguments is None else list(arguments), prog_name="skinbayes", standalone_mode=False
-        )
+        with _repairs_told():
+            status = cli.main(
+                args=None if arguments is None else list(arguments),
+                prog_name="skinbayes",
+                standalone_mode=False,
+            )
     except InputError as error:
         click.echo(f"skinbayes: {_printable(str(error))}", err=True)
         status = EXIT_BAD_INPUT
@@ -79,6 +85,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
         click.echo(f"skinbayes: {_printable(place)}{error.strerror or error}", err=True)
         status = EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
+
+
+@contextmanager
+def _repairs_told() -> Iterator[None]:
+    """Say on standard error, in one line, what was damaged and what was done about it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", RepairWarning)
+        shown = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if issubclass(category, RepairWarning):
+                click.echo(f"skinbayes: {_printable(str(message))}", err=True)
+            else:
+                shown(message, category, *place, **more)
+
+        warnings.showwarning = show
+        yield
 
 
 def _printable(text: str) -> str:

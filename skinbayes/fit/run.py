@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.errors import InputError
+from skinbayes.fit.manifest import STEPS
 from skinbayes.fit.references import references
 from skinbayes.fit.result import Fit
-from skinbayes.fit.storage import RESULT, STEPS, SUMMARY, claim_run
+from skinbayes.fit.storage import claim_run, save_run
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
 
 if TYPE_CHECKING:
@@ -73,6 +74,11 @@ def sample(
         The model has no data or nothing to infer, an option is out of range, or the stored run is another one.
     KeyboardInterrupt
         Interrupted; with ``directory`` the steps so far are kept.
+
+    Warns
+    -----
+    RepairWarning
+        Files of the run to be resumed were damaged or missing, and what was done about it.
     """
     from skinbayes.sampling.ensembles import run_ensembles
     from skinbayes.sampling.options import SamplerOptions
@@ -91,8 +97,7 @@ def sample(
     )
     settings.walkers_for(problem.dimension)  # refuses too few before anything is written
     folder = None if directory is None else Path(directory)
-    if folder is not None:
-        claim_run(folder, problem, resume)
+    manifest = None if folder is None else claim_run(folder, problem, resume)
     started, processor = time.perf_counter(), time.process_time()
     problem.prepare(cores=cores)  # before work is shared out, so that it is done once
     target = problem.target()
@@ -107,9 +112,8 @@ def sample(
     }
     provenance = _provenance(problem, chains, settings) | {"seconds": seconds}
     fit = Fit(groups=groups, provenance=provenance, problem=problem)
-    if folder is not None:
-        fit.save(folder / RESULT)
-        fit.summary(derived=True).to_csv(folder / SUMMARY, index_label="parameter")
+    if folder is not None and manifest is not None:
+        save_run(fit, folder, manifest)
     return fit
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError
 from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.symbols import spoken_name
@@ -47,14 +47,10 @@ def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> 
     """
     path = Path(path)
     page = render(fit, yardsticks)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        temporary.write_text(page, encoding="utf-8")
-        temporary.replace(path)
+        write_atomically(path, page.encode())
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error})") from None
-    finally:
-        temporary.unlink(missing_ok=True)
     return path
 
 

@@ -15,7 +15,7 @@ from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
-from skinbayes.sampling.store import SampleStore
+from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stragglers import gathered, last_gathering
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.workers import advancing
@@ -125,7 +125,7 @@ def draw_identity(
     """
     moves = moves or moves_for(options.costly)
     return {
-        "model or data (fingerprint)": target.fingerprint,
+        FINGERPRINT: target.fingerprint,
         "coordinates": list(target.names),
         "sampler option seed": options.seed,
         "sampler option ensembles": options.ensembles,

@@ -2,26 +2,67 @@
 
 A store is a directory with one small header and one HDF5 file for each block of steps. A file is written under a
 temporary name, forced to disk and then renamed, and never touched again: at any moment the directory holds a
-complete run up to some block.
+complete run up to some block. Every file has a checksum. What is damaged is put aside with what follows it: the same
+steps are made again from those before.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
-from collections.abc import Callable, Mapping
+import re
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from skinbayes.errors import FingerprintMismatch, InputError
+from skinbayes.atomic import PARTIAL, write_atomically
+from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning
 from skinbayes.sampling.advance import Block
+from skinbayes.sampling.segments import OtherRun, read_segment, segment_image
+from skinbayes.sealed import DAMAGED, DamagedFile, content_digest, put_aside, read_note, sealed_note
 
 HEADER = "header.json"
-PARTIAL = ".partial"
-FORMAT = 1
+FORMAT = 2
+FINGERPRINT = "model or data (fingerprint)"
+"""Name of the target's fingerprint in the identity of a run."""
+
+_SEGMENT = re.compile(r"segment-([0-9]{6})\.h5")
+
+
+def stored_identity(path: Path) -> dict[str, Any] | None:
+    """What the draws of a stored run depend on, None if there is no header.
+
+    Parameters
+    ----------
+    path : the directory of a store
+
+    Raises
+    ------
+    DamagedFile
+        The header is not what was written.
+    InputError
+        It is of another version.
+    """
+    header = path / HEADER
+    try:
+        content = read_note(header)
+    except FileNotFoundError:
+        return None
+    if content.get("format") != FORMAT:
+        raise InputError(f"{header}: store format {content.get('format')!r:.20} found, {FORMAT} expected.")
+    identity = content.get("identity")
+    if not isinstance(identity, dict):
+        raise DamagedFile("it does not say what the run is")
+    return identity
+
+
+def stored_fingerprint(path: Path) -> str | None:
+    """Fingerprint of the target whose steps a directory holds, None if that cannot be told."""
+    try:
+        found = (stored_identity(path) or {}).get(FINGERPRINT)
+    except DamagedFile:
+        return None
+    return found if isinstance(found, str) else None
 
 
 class SampleStore:
@@ -37,7 +78,7 @@ class SampleStore:
         self.path = Path(path)
         self._resume = resume
         self._digest = ""
-        self._count = 0
+        self._rounds: list[list[Block]] = []
 
     def open(self, identity: Mapping[str, Any]) -> list[list[Block]]:
         """Claim the directory for a run, or take up the run it holds.
@@ -55,155 +96,110 @@ class SampleStore:
         FingerprintMismatch
             If the directory holds a run with another identity; the parts that differ are named.
         InputError
-            If it holds a run and this one was not to resume, or if a file is missing or damaged.
+            If it holds a run and this one was not to resume, or cannot be written.
+
+        Warns
+        -----
+        RepairWarning
+            Steps were damaged or missing: those before them are returned, those after them are put aside.
         """
         if self.path.exists() and not self.path.is_dir():
             raise InputError(f"{self.path}: a file found, a directory expected for the steps of a run.")
         wanted = json.loads(json.dumps(dict(identity)))
-        self._digest = hashlib.sha256(json.dumps(wanted, sort_keys=True).encode()).hexdigest()
+        self._digest = content_digest(wanted)
         for leftover in self.path.glob(f"*{PARTIAL}"):
             leftover.unlink(missing_ok=True)
-        numbers = sorted(int(file.stem.removeprefix("segment-")) for file in self.path.glob("segment-*.h5"))
-        header = self.path / HEADER
-        if not header.exists():
-            if numbers:
-                raise InputError(
-                    f"{header}: missing, though steps of a run are beside it. The run cannot be continued."
-                )
-            content = json.dumps({"format": FORMAT, "identity": wanted}, indent=2) + "\n"
-            self._publish(header, lambda partial: partial.write_text(content, encoding="utf-8"))
-            return []
-        if not self._resume:
+        segments = self._segments()
+        header, trouble = self.path / HEADER, ""
+        try:
+            stored = stored_identity(self.path)
+        except DamagedFile as error:
+            stored, trouble = None, f"damaged ({error})"
+        except PermissionError as error:
+            raise InputError(f"{header}: cannot be read ({error.strerror}).") from error
+        if (segments or stored is not None) and not self._resume:
             raise InputError(
-                f"{self.path}: holds a run of {len(numbers)} blocks of steps already. "
+                f"{self.path}: holds a run of {len(segments)} blocks of steps already. "
                 "Resume it, or give another directory."
             )
-        self._compare(header, wanted)
-        if numbers != list(range(1, len(numbers) + 1)):
-            lost = min(set(range(1, len(numbers) + 1)) - set(numbers))
-            raise InputError(
-                f"{self._segment(lost)}: missing, though later steps are there. The run cannot be continued."
-            )
-        self._count = len(numbers)
-        return [self._read(self._segment(number), wanted) for number in numbers]
+        if stored is not None:
+            self._compare(stored, wanted)
+        self._rounds = self._read(segments)
+        if stored is None:
+            # the segments, too, know which run they belong to
+            if header.exists():
+                put_aside(header)
+            elif segments:
+                trouble = "missing"
+            if trouble:
+                _warn(f"{header}: {trouble}; written again.")
+            self._publish(header, sealed_note({"format": FORMAT, "identity": wanted}))
+        return list(self._rounds)
 
     def append(self, blocks: list[Block]) -> None:
         """Add the next block of every ensemble; on return it is on disk."""
-        target = self._segment(self._count + 1)
-        self._publish(target, lambda partial: self._write(partial, blocks))
-        self._count += 1
+        before = self._rounds[-1] if self._rounds else None
+        self._publish(self._segment(len(self._rounds) + 1), segment_image(blocks, self._digest, before))
+        self._rounds.append(blocks)
 
     def _segment(self, number: int) -> Path:
         return self.path / f"segment-{number:06d}.h5"
 
-    def _compare(self, header: Path, wanted: dict[str, Any]) -> None:
-        try:
-            content = json.loads(header.read_text(encoding="utf-8"))
-            stored, version = content["identity"], content["format"]
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            raise InputError(f"{header}: cannot be read ({error}). The run cannot be continued.") from error
-        if version != FORMAT:
-            raise InputError(f"{header}: store format {version!r} found, {FORMAT} expected.")
+    def _segments(self) -> list[Path]:
+        """What has the name of a segment, in order."""
+        names = (file.name for file in self.path.iterdir()) if self.path.is_dir() else ()
+        return [self.path / name for name in sorted(filter(_SEGMENT.fullmatch, names))]
+
+    def _compare(self, stored: dict[str, Any], wanted: dict[str, Any]) -> None:
         differing = [key for key in {**stored, **wanted} if stored.get(key) != wanted.get(key)]
         if differing:
             parts = "; ".join(
-                f"{key} is {stored.get(key)!r} there and {wanted.get(key)!r} here" for key in differing
+                f"{key} is {stored.get(key)!r:.200} there and {wanted.get(key)!r:.200} here"
+                for key in differing
             )
             raise FingerprintMismatch(
                 f"{self.path}: holds a run that cannot be continued with these settings: {parts}. "
                 "Use the same model, data and settings, or another directory."
             )
 
-    def _publish(self, target: Path, write: Callable[[Path], object]) -> None:
-        partial = target.with_name(target.name + PARTIAL)
+    def _read(self, segments: list[Path]) -> list[list[Block]]:
+        """The blocks up to the first segment that is missing or damaged; the segments from there on are put aside."""
+        rounds: list[list[Block]] = []
+        for path in segments:
+            expected = self._segment(len(rounds) + 1)
+            try:
+                if path != expected:
+                    raise FileNotFoundError
+                rounds.append(read_segment(path, self._digest, rounds[-1] if rounds else None))
+                continue
+            except FileNotFoundError:
+                trouble = "missing"
+            except DamagedFile as error:
+                trouble = f"damaged ({error})"
+            except PermissionError as error:
+                raise InputError(f"{path}: cannot be read ({error.strerror}).") from error
+            except OtherRun:
+                raise FingerprintMismatch(
+                    f"{path}: belongs to another run than the steps beside it. Put it elsewhere and resume: "
+                    "its steps and those after it are made again."
+                ) from None
+            later = segments[len(rounds) :]
+            for file in later:
+                put_aside(file)
+            _warn(
+                f"{expected}: {trouble}. Blocks of steps kept: {len(rounds)}; put aside as *{DAMAGED}: {len(later)}. "
+                "The steps from there on are made again, and the draws become the same."
+            )
+            break
+        return rounds
+
+    def _publish(self, target: Path, content: bytes) -> None:
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            write(partial)
-            _to_disk(partial)
-            partial.replace(target)
-            _to_disk(self.path)
+            write_atomically(target, content)
         except OSError as error:
             raise InputError(f"{target}: cannot be written ({error}).") from error
 
-    def _write(self, partial: Path, blocks: list[Block]) -> None:
-        import h5py
 
-        with h5py.File(partial, "w", locking=False) as file:
-            file.attrs["identity"] = self._digest
-            for name, values in _arrays(blocks).items():
-                # Checksums make a damaged file an error when it is read.
-                file.create_dataset(name, data=values, chunks=values.shape, fletcher32=True)
-
-    def _read(self, path: Path, identity: Mapping[str, Any]) -> list[Block]:
-        import h5py
-
-        try:
-            with h5py.File(path, "r", locking=False) as file:
-                digest = file.attrs["identity"]
-                arrays = {name: file[name][()] for name in _ARRAYS}
-        except (OSError, KeyError, ValueError, RuntimeError) as error:
-            raise InputError(f"{path}: damaged ({error}). The run cannot be continued.") from error
-        if digest != self._digest:
-            raise FingerprintMismatch(f"{path}: belongs to another run than the {HEADER} beside it.")
-        return _blocks(arrays)
-
-
-_ARRAYS = (
-    "positions",
-    "log_density",
-    "generator_key",
-    "generator_position",
-    "generator_has_gauss",
-    "generator_cached_gaussian",
-    "evaluations",
-    "invalid",
-    "first_invalid",
-)
-
-
-def _arrays(blocks: list[Block]) -> dict[str, np.ndarray]:
-    """The blocks of all ensembles as arrays whose first axis is the ensemble."""
-    states = [block.random_state for block in blocks]
-    return {
-        "positions": np.stack([block.positions for block in blocks]),
-        "log_density": np.stack([block.log_density for block in blocks]),
-        "generator_key": np.array([state[1] for state in states], dtype=np.uint32),
-        "generator_position": np.array([state[2] for state in states], dtype=np.int64),
-        "generator_has_gauss": np.array([state[3] for state in states], dtype=np.int64),
-        "generator_cached_gaussian": np.array([state[4] for state in states], dtype=np.float64),
-        "evaluations": np.array([block.evaluations for block in blocks], dtype=np.int64),
-        "invalid": np.array([block.invalid for block in blocks], dtype=np.int64),
-        "first_invalid": np.stack([block.first_invalid for block in blocks]),
-    }
-
-
-def _blocks(arrays: Mapping[str, np.ndarray]) -> list[Block]:
-    """The inverse of :func:`_arrays`."""
-    return [
-        Block(
-            positions=arrays["positions"][index],
-            log_density=arrays["log_density"][index],
-            random_state=(
-                "MT19937",
-                arrays["generator_key"][index],
-                int(arrays["generator_position"][index]),
-                int(arrays["generator_has_gauss"][index]),
-                float(arrays["generator_cached_gaussian"][index]),
-            ),
-            evaluations=int(arrays["evaluations"][index]),
-            invalid=int(arrays["invalid"][index]),
-            first_invalid=arrays["first_invalid"][index],
-        )
-        for index in range(len(arrays["positions"]))
-    ]
-
-
-def _to_disk(path: Path) -> None:
-    """Force a file, or the names in a directory, to disk."""
-    if path.is_dir() and os.name != "posix":
-        return  # a directory cannot be opened there
-    handle = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+def _warn(message: str) -> None:
+    warnings.warn(message, RepairWarning, stacklevel=3)

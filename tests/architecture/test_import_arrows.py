@@ -9,6 +9,7 @@ import pytest
 from source_tree import HEAVY, ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
 
 WORDS = {"errors", "arrays", "constants", "vocabulary"}
+FILES = {"atomic", "sealed"}
 PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
 STATISTICS = {"statistics", "sampling", "diagnose"}
 
@@ -17,6 +18,8 @@ MAY_KNOW: dict[str, set[str]] = {
     "arrays": set(),
     "constants": set(),
     "vocabulary": {"errors"},
+    "atomic": set(),
+    "sealed": set(),
     "units": {"errors", "arrays", "vocabulary", "constants"},
     # physics
     "roughness": {"errors", "arrays", "constants"},
@@ -26,17 +29,17 @@ MAY_KNOW: dict[str, set[str]] = {
     "lubrication": {"errors", "arrays", "constants", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
-    "sampling": {"errors", "arrays", "statistics"},
+    "sampling": {"errors", "arrays", *FILES, "statistics"},
     "diagnose": {"errors", "arrays", "statistics"},
     # where they meet
     "files": {*WORDS, "units", "roughness", "statistics"},
     "forward": {*WORDS, *PHYSICS},
     "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "skinbayes"},
-    "fit": {*WORDS, "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
+    "fit": {*WORDS, *FILES, "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
+    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
                "skinbayes"},
     "cli": {*WORDS, "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
     # the shop window names its goods but opens them when asked
@@ -52,10 +55,11 @@ HOMES: dict[str, set[str]] = {
     "click": {"cli"},
     "corner": {"plot"},
     "emcee": {"sampling"},
+    "h5netcdf": {"fit"},
     "h5py": {"sampling", "fit"},
     "jinja2": {"report"},
     "matplotlib": {"plot", "report"},
-    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "vocabulary"},
+    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "vocabulary", *FILES},
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
     "platformdirs": {"forward"},

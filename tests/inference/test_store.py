@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import json
 
+import h5py
 import numpy as np
 import pytest
 from sampling_targets import UnitGaussian
 
-from skinbayes.errors import FingerprintMismatch, InputError
+from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning
 from skinbayes.sampling.advance import Block
 from skinbayes.sampling.ensembles import draw_identity, run_ensembles
 from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.segments import segment_image
 from skinbayes.sampling.store import HEADER, SampleStore
+from skinbayes.sealed import content_digest, sealed, sealed_note
 
 IDENTITY = {"model or data (fingerprint)": "abc", "sampler option seed": 1}
 OPTIONS = SamplerOptions(seed=1, ensembles=2, walkers=8, block_steps=5, max_steps=10)
@@ -130,47 +134,171 @@ def test_a_segment_of_another_run_is_refused(stored, tmp_path):
         SampleStore(stored, resume=True).open(IDENTITY)
 
 
-def test_a_missing_segment_is_named(stored):
+def first_rounds(stored, count, trouble):
+    """Resume a damaged store of three rounds: the first ``count`` are whole, and what is wrong is said."""
+    with pytest.warns(RepairWarning, match=trouble) as told:
+        store = SampleStore(stored, resume=True)
+        rounds = store.open(IDENTITY)
+    assert len(told) == 1
+    assert len(rounds) == count
+    for number, blocks in enumerate(rounds):
+        for ensemble in range(2):
+            assert_same(blocks[ensemble], block(2 * number + ensemble))
+    return store
+
+
+def test_steps_after_a_missing_segment_are_put_aside(stored):
+    later = (stored / "segment-000003.h5").read_bytes()
     (stored / "segment-000002.h5").unlink()
-    with pytest.raises(InputError, match=r"segment-000002\.h5: missing"):
-        SampleStore(stored, resume=True).open(IDENTITY)
+    store = first_rounds(stored, 1, r"segment-000002\.h5: missing")
+    assert (stored / "segment-000003.h5.damaged").read_bytes() == later
+    store.append([block(2), block(3)])
+    store.append([block(4), block(5)])
+    assert (stored / "segment-000003.h5").read_bytes() == later  # made again, the same to the last bit
+    assert len(SampleStore(stored, resume=True).open(IDENTITY)) == 3
 
 
-@pytest.mark.parametrize("damage", ["truncated", "empty", "flipped", "text"])
-def test_a_damaged_segment_is_named(stored, damage):
-    file = stored / "segment-000002.h5"
-    content = bytearray(file.read_bytes())
-    if damage == "truncated":
-        content = content[: len(content) // 2]
-    if damage == "empty":
-        content = bytearray()
-    if damage == "flipped":
-        place = content.index(block(2).positions[0, 0].tobytes())
-        content[place] ^= 1
-    if damage == "text":
-        content = bytearray(b"not HDF5 at all\n" * 100)
-    file.write_bytes(content)
-    with pytest.raises(InputError, match=r"segment-000002\.h5: damaged"):
-        SampleStore(stored, resume=True).open(IDENTITY)
+def damaged(content, how):
+    if how == "truncated":
+        return content[: len(content) // 2]
+    if how == "shorter by a byte":
+        return content[:-1]
+    if how == "longer by a byte":
+        return content + b"\n"
+    if how == "empty":
+        return b""
+    if how == "text":
+        return b"not HDF5 at all\n" * 100
+    changed = bytearray(content)
+    if how == "flipped":
+        changed[len(content) // 3] ^= 1
+    else:
+        changed[512:1024] = bytes(512)
+    return bytes(changed)
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"format": 1}', "\x00"])
-def test_a_damaged_header_is_named(stored, content):
+@pytest.mark.parametrize("number", [1, 2, 3])
+@pytest.mark.parametrize(
+    "how", ["truncated", "shorter by a byte", "longer by a byte", "empty", "text", "flipped", "zeroed"]
+)
+def test_a_damaged_segment_is_named_and_put_aside(stored, number, how):
+    file = stored / f"segment-{number:06d}.h5"
+    file.write_bytes(damaged(file.read_bytes(), how))
+    content = file.read_bytes()
+    first_rounds(stored, number - 1, rf"segment-{number:06d}\.h5: damaged")
+    assert file.with_name(file.name + ".damaged").read_bytes() == content
+    assert not list(stored.glob("segment-000003.h5"))
+    assert len(SampleStore(stored, resume=True).open(IDENTITY)) == number - 1  # nothing more to say
+
+
+def test_what_was_put_aside_before_stays(stored):
+    file = stored / "segment-000003.h5"
+    for number in range(3):
+        file.write_bytes(b"%d" % number)
+        first_rounds(stored, 2, "damaged")
+    names = ["segment-000003.h5.damaged", "segment-000003.h5.damaged-2", "segment-000003.h5.damaged-3"]
+    assert [(stored / name).read_bytes() for name in names] == [b"0", b"1", b"2"]
+
+
+def test_a_segment_in_the_place_of_another_is_not_taken(stored):
+    # whole, and of this run
+    (stored / "segment-000002.h5").write_bytes((stored / "segment-000003.h5").read_bytes())
+    first_rounds(stored, 1, r"segment-000002\.h5: damaged .*does not follow")
+
+
+def test_a_stray_segment_is_put_aside(stored):
+    (stored / "segment-000003.h5").rename(stored / "segment-000009.h5")
+    first_rounds(stored, 2, r"segment-000003\.h5: missing")
+    for name in ("segment-abc.h5", "segment-9.h5", "segment-00000４.h5", "segment-.h5"):
+        (stored / name).write_text("mine")
+    (stored / "segment-000003.h5").mkdir()
+    first_rounds(stored, 2, r"segment-000003\.h5: damaged \(no ordinary file\)")
+    assert (stored / "segment-abc.h5").read_text() == "mine"
+
+
+NOT_A_HEADER = [
+    "", "{", "[]", "3", '{"format": 1}', "\x00", "[" * 100_000, '{"a":' * 100_000, '{"format": 2, "identity": 5}',
+    '{"format": [2], "identity": {}, "sha256": {}}', "9" * 10_000,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("content", NOT_A_HEADER)
+def test_a_damaged_header_is_named_and_written_again(stored, content):
+    whole = (stored / HEADER).read_bytes()
     (stored / HEADER).write_text(content)
-    with pytest.raises(InputError, match=r"header\.json: cannot be read"):
-        SampleStore(stored, resume=True).open(IDENTITY)
+    first_rounds(stored, 3, r"header\.json: damaged")
+    assert (stored / HEADER).read_bytes() == whole
+    assert (stored / f"{HEADER}.damaged").read_text() == content
 
 
-def test_a_missing_header_is_named(stored):
+def test_a_missing_header_is_written_again(stored):
+    whole = (stored / HEADER).read_bytes()
     (stored / HEADER).unlink()
-    with pytest.raises(InputError, match=r"header\.json: missing"):
-        SampleStore(stored, resume=True).open(IDENTITY)
+    first_rounds(stored, 3, r"header\.json: missing")
+    assert (stored / HEADER).read_bytes() == whole
+
+
+@pytest.mark.parametrize("content", ["", None])
+def test_without_a_header_steps_of_another_run_are_refused(stored, content):
+    (stored / HEADER).unlink()
+    if content is not None:
+        (stored / HEADER).write_text(content)
+    before = {file.name for file in stored.iterdir()}
+    with pytest.raises(FingerprintMismatch, match=r"segment-000001\.h5: belongs to another run"):
+        SampleStore(stored, resume=True).open({**IDENTITY, "sampler option seed": 2})
+    assert {file.name for file in stored.iterdir()} == before
+
+
+def crafted(change):
+    """A segment with a valid checksum whose content was changed."""
+    image = io.BytesIO(segment_image([block(4), block(5)], content_digest(IDENTITY), [block(2), block(3)]))
+    with h5py.File(image, "r+") as file:
+        change(file)
+    return sealed(image.getvalue())
+
+
+def other(name, **options):
+    def change(file):
+        del file[name]
+        if options:
+            file.create_dataset(name, **options)
+
+    return change
+
+
+CRAFTED = {
+    "missing": other("positions"),
+    "declared size": other("log_density", shape=(2, 5, 10**12), dtype="f8", chunks=(1, 1, 100)),
+    "compressed": other("log_density", data=np.zeros((2, 5, 80_000)), compression="gzip"),
+    "text": other("evaluations", data=["a", "b"]),
+    "scalar": other("evaluations", data=3),
+    "nothing": other("evaluations", data=h5py.Empty("i8")),
+    "another size": other("first_invalid", data=np.zeros((2, 7))),
+    "more ensembles": other("evaluations", data=np.zeros(3, dtype=np.int64)),
+    "single precision": other("log_density", data=np.zeros((2, 5, 8), dtype="f4")),
+    "group": lambda file: (other("positions")(file), file.create_group("positions")),
+    "no identity": lambda file: file.attrs.__delitem__("identity"),
+    "numbers for identity": lambda file: file.attrs.__setitem__("follows", np.zeros(3)),
+    "link": lambda file: (other("positions")(file), file.__setitem__("positions", h5py.SoftLink("/a"))),
+}
+
+
+@pytest.mark.parametrize("name", CRAFTED)
+def test_a_segment_made_to_confuse_is_put_aside(stored, name):
+    (stored / "segment-000003.h5").write_bytes(crafted(CRAFTED[name]))
+    first_rounds(stored, 2, r"segment-000003\.h5: damaged")
+
+
+def test_what_is_crafted_is_whole_but_for_the_change(stored):
+    (stored / "segment-000003.h5").write_bytes(crafted(lambda file: None))
+    assert len(SampleStore(stored, resume=True).open(IDENTITY)) == 3
 
 
 def test_a_later_format_is_named(stored):
     content = json.loads((stored / HEADER).read_text())
-    (stored / HEADER).write_text(json.dumps({**content, "format": 99}))
-    with pytest.raises(InputError, match="store format 99 found, 1 expected"):
+    del content["sha256"]
+    (stored / HEADER).write_bytes(sealed_note({**content, "format": 99}))
+    with pytest.raises(InputError, match="store format 99 found, 2 expected"):
         SampleStore(stored, resume=True).open(IDENTITY)
 
 

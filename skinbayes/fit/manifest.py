@@ -1,0 +1,110 @@
+"""``run.json``: what a run is, and the checksums of the files of its directory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from skinbayes.atomic import write_atomically
+from skinbayes.sealed import DamagedFile, file_digest, read_note, sealed_note
+
+RUN = "run.json"
+RESULT = "result.nc"
+SUMMARY = "summary.csv"
+STEPS = "steps"
+"""Folder of the sampler's step store inside a run directory."""
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What ``run.json`` says.
+
+    Attributes
+    ----------
+    model : name of the model
+    fingerprint : digest of everything the posterior depends on
+    data, surface, rheology : paths of the copies inside the run directory, None if there is none
+    settings : values that were given beside the model file, by name, as text
+    rows : labels that were selected, by column; None if the data have no rows to select
+    files : sha256 by path inside the run directory, with ``/``
+    """
+
+    model: str
+    fingerprint: str
+    data: str | None = None
+    surface: str | None = None
+    rheology: str | None = None
+    settings: Mapping[str, str] = field(default_factory=dict)
+    rows: Mapping[str, list[str]] | None = None
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    def inputs(self) -> list[str]:
+        """The files that the run was made from."""
+        return [name for name in self.files if name not in (RESULT, SUMMARY)]
+
+
+def read_manifest(directory: Path) -> Manifest | None:
+    """What ``run.json`` says, None if there is none.
+
+    Raises
+    ------
+    DamagedFile
+        It is not what was written.
+    """
+    try:
+        note = read_note(directory / RUN)
+    except FileNotFoundError:
+        return None
+    for name, accepts in _ACCEPTED.items():
+        if not accepts(note.get(name)):
+            raise DamagedFile(f"'{name}' is not as this version writes it")
+    return Manifest(**{name: note[name] for name in _ACCEPTED})
+
+
+def write_manifest(directory: Path, manifest: Manifest) -> None:
+    """Write ``run.json``."""
+    write_atomically(directory / RUN, sealed_note(vars(manifest)))
+
+
+def trouble(directory: Path, manifest: Manifest) -> dict[str, str]:
+    """The inputs that are not those which the run was made with, each with what is wrong."""
+    found = {}
+    for name in manifest.inputs():
+        path = directory / name
+        if not path.is_file():
+            found[name] = "missing"
+        elif file_digest(path) != manifest.files[name]:
+            found[name] = "damaged, or changed since the run was made (its sha256 is another)"
+    return found
+
+
+def _text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _inside(value: Any) -> bool:
+    """Whether a value is a path that stays inside the run directory."""
+    path = PurePosixPath(value) if _text(value) and "\0" not in value else PurePosixPath("/")
+    return not path.is_absolute() and ".." not in path.parts
+
+
+def _mapping(value: Any, key: Callable[[Any], bool], item: Callable[[Any], bool]) -> bool:
+    return isinstance(value, dict) and all(key(k) and item(v) for k, v in value.items())
+
+
+def _labels(value: Any) -> bool:
+    return isinstance(value, list) and all(map(_text, value))
+
+
+_ACCEPTED: dict[str, Callable[[Any], bool]] = {
+    "model": _text,
+    "fingerprint": _text,
+    "data": lambda value: value is None or _inside(value),
+    "surface": lambda value: value is None or _inside(value),
+    "rheology": lambda value: value is None or _inside(value),
+    "settings": lambda value: _mapping(value, _text, _text),
+    "rows": lambda value: value is None or _mapping(value, _text, _labels),
+    "files": lambda value: _mapping(value, _inside, _text),
+}
