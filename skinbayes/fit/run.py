@@ -15,7 +15,7 @@ import numpy as np
 from skinbayes.errors import InputError
 from skinbayes.fit.references import references
 from skinbayes.fit.result import Fit
-from skinbayes.fit.storage import RESULT, STEPS, SUMMARY, claim_run
+from skinbayes.fit.run_directory import RunDirectory
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from skinbayes.problem import Problem
     from skinbayes.sampling.chains import Chains
     from skinbayes.sampling.ensembles import Progress
+    from skinbayes.sampling.options import SamplerOptions
 
 DEFAULT_SEED = 1
 """Seed when none is given: the same command gives the same draws."""
@@ -42,6 +43,7 @@ def sample(
     directory: str | Path | None = None,
     resume: bool = False,
     progress: Callable[[Progress], None] | None = None,
+    preparing: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Fit:
     """Sample the posterior of a problem with emcee until the stopping rule is met.
@@ -60,6 +62,7 @@ def sample(
     directory : where to keep steps and result; None keeps everything in memory
     resume : continue the run in ``directory``
     progress : called after every block of steps
+    preparing : called with the number done and their total while tables are built before sampling
     options : further fields of ``skinbayes.sampling.SamplerOptions`` (``max_steps``, ``walkers``, ``ensembles``, …)
 
     Returns
@@ -70,13 +73,15 @@ def sample(
     Raises
     ------
     InputError
-        The model has no data or nothing to infer, an option is out of range, or the stored run is another one.
+        The model has no data or nothing to infer, an option is out of range, or ``directory`` is neither new nor empty nor a
+        run of this problem, or another process writes there.
+    MachineError
+        The disk is full, the directory was carried off, a worker process died twice, or memory did not suffice; steps
+        stored before are kept, and the message says where.
     KeyboardInterrupt
         Interrupted; with ``directory`` the steps so far are kept.
     """
-    from skinbayes.sampling.ensembles import run_ensembles
     from skinbayes.sampling.options import SamplerOptions
-    from skinbayes.sampling.store import SampleStore
 
     if not problem.observations and problem.spec.observables:
         raise InputError(
@@ -90,27 +95,38 @@ def sample(
         seed=seed, ess=ess, cores=cores, **{"costly": problem.forward.costly, **options}
     )
     settings.walkers_for(problem.dimension)  # refuses too few before anything is written
-    folder = None if directory is None else Path(directory)
-    if folder is not None:
-        claim_run(folder, problem, resume)
+    if directory is None:
+        return _fit(problem, settings, None, progress, preparing)
+    with RunDirectory(Path(directory), problem, resume) as run:
+        fit = _fit(problem, settings, run, progress, preparing)
+        run.keep(fit)
+    return fit
+
+
+def _fit(
+    problem: Problem,
+    settings: SamplerOptions,
+    run: RunDirectory | None,
+    progress: Callable[[Progress], None] | None,
+    preparing: Callable[[int, int], None] | None,
+) -> Fit:
+    from skinbayes.sampling.ensembles import run_ensembles
+
     started, processor = time.perf_counter(), time.process_time()
-    problem.prepare(cores=cores)  # before work is shared out, so that it is done once
-    target = problem.target()
-    store = None if folder is None else SampleStore(folder / STEPS, resume=resume)
-    chains = run_ensembles(target, settings, store=store, progress=progress)
+    problem.prepare(preparing, settings.cores)  # before work is shared out, so that it is done once
+    if run is not None:
+        run.check()  # a table may take minutes
+    store = None if run is None else run.store
+    chains = run_ensembles(problem.target(), settings, store=store, progress=progress)
     sampled = time.perf_counter()
-    groups = _groups(problem, chains, seed)
+    groups = _groups(problem, chains, settings.seed)
     seconds = {
         "sampling": sampled - started,
         "total": time.perf_counter() - started,
         "processor": time.process_time() - processor,
     }
     provenance = _provenance(problem, chains, settings) | {"seconds": seconds}
-    fit = Fit(groups=groups, provenance=provenance, problem=problem)
-    if folder is not None:
-        fit.save(folder / RESULT)
-        fit.summary(derived=True).to_csv(folder / SUMMARY, index_label="parameter")
-    return fit
+    return Fit(groups=groups, provenance=provenance, problem=problem)
 
 
 def _groups(problem: Problem, chains: Chains, seed: int) -> dict[str, xarray.Dataset]:
@@ -125,7 +141,7 @@ def _groups(problem: Problem, chains: Chains, seed: int) -> dict[str, xarray.Dat
     }
 
 
-def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, Any]:
+def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> dict[str, Any]:
     report = chains.report
     dataset = problem.dataset
     data: dict[str, Any] = {"fingerprint": problem.data_fingerprint}

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from skinbayes.errors import FingerprintMismatch, InputError
+from skinbayes.errors import InputError
 from skinbayes.fit.result import Fit
 
 if TYPE_CHECKING:
@@ -75,111 +74,6 @@ def _group_names(file: Path) -> list[str]:
 
     with h5py.File(file, "r") as opened:
         return [name for name, item in opened.items() if isinstance(item, h5py.Group)]
-
-
-def claim_run(directory: Path, problem: Problem, resume: bool) -> None:
-    """Make the directory of a run and put model file, data and spectrum into it, so that it can be read on its own.
-
-    Nothing is written into a directory that holds another run.
-
-    Parameters
-    ----------
-    directory : the run directory
-    problem : what is to be sampled
-    resume : the directory may hold a run of this problem, finished or not
-
-    Raises
-    ------
-    InputError
-        It holds a run that is not to be continued or cannot be, or it cannot be written.
-    """
-    try:
-        holds_result = (directory / RESULT).exists()
-        if not resume and (holds_result or (directory / STEPS).is_dir()):
-            raise InputError(
-                f"{directory}: holds {'a result' if holds_result else 'an unfinished run'} already; "
-                "give another folder, or continue it with --resume"
-            )
-        stored = _read_note(directory)
-        if stored is not None and resume and stored.get("fingerprint") != problem.fingerprint:
-            raise FingerprintMismatch(
-                f"{directory}: holds a run of '{stored.get('model')}' with another model, data, prior or version than "
-                f"'{problem.name}' here; give another folder"
-            )
-        for path in _own_yardsticks(problem):
-            if not path.is_file():
-                raise InputError(
-                    f"{problem.spec.path}: yardsticks: no file {path}; expected a model file to compare with"
-                )
-        if stored is None or not resume:
-            directory.mkdir(parents=True, exist_ok=True)
-            _write_inputs(directory, problem)
-    except InputError:
-        raise
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise InputError(
-            f"{directory}: cannot be used for a run ({reason}); expected a folder that can be written"
-        ) from None
-
-
-def _own_yardsticks(problem: Problem) -> list[Path]:
-    """Yardsticks that are no shipped models."""
-    return [Path(name) for name in problem.spec.yardsticks if Path(name).suffix == ".toml"]
-
-
-def _read_note(directory: Path) -> dict[str, Any] | None:
-    """What ``run.json`` says, None if there is no run; a damaged one counts as another run."""
-    try:
-        note = json.loads((directory / RUN).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return None
-    except ValueError:
-        return {}
-    return note if isinstance(note, dict) else {}
-
-
-def _write_inputs(directory: Path, problem: Problem) -> None:
-    _copy(problem.spec.path, directory / "model.toml")
-    note: dict[str, Any] = {
-        "model": problem.name,
-        "fingerprint": problem.fingerprint,
-        "data": None,
-        "surface": None,
-        "rheology": None,
-        "settings": {name: text for name, text in problem.settings.items() if name != "surface"},
-    }
-    if "surface" in problem.settings and problem.surface_file is None:
-        note["settings"]["surface"] = problem.settings["surface"]
-    if problem.dataset is not None:
-        source = Path(problem.dataset.path)
-        folder = directory / "data"
-        folder.mkdir(exist_ok=True)
-        _copy(source, folder / source.name)
-        note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
-        provenance = source.with_name("provenance.toml")
-        if source.name == "data.csv" and provenance.exists():
-            _copy(provenance, folder / provenance.name)
-            note["data"] = "data"
-        else:
-            note["data"] = f"data/{source.name}"
-    if problem.spec.rheology is not None and Path(problem.spec.rheology).is_file():
-        _copy(Path(problem.spec.rheology), directory / "rheology.csv")
-        note["rheology"] = "rheology.csv"
-    if problem.surface_file is not None:
-        _copy(problem.surface_file, directory / "spectrum.csv")
-        note["surface"] = "spectrum.csv"
-    for path in _own_yardsticks(problem):
-        (directory / YARDSTICK_MODELS).mkdir(exist_ok=True)
-        _copy(path, directory / YARDSTICK_MODELS / path.name)
-    # last, so that a directory with this file is complete
-    (directory / RUN).write_text(json.dumps(note, indent=1) + "\n", encoding="utf-8")
-
-
-def _copy(source: Path, copy: Path) -> None:
-    # the user may point at the copies of an earlier run in this very directory
-    if not (copy.exists() and copy.samefile(source)):
-        shutil.copyfile(source, copy)
 
 
 def _rebuild(path: Path, provenance: Mapping[str, Any]) -> Problem | None:

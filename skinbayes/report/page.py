@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes.errors import InputError
+from skinbayes.atomic import write_atomically
+from skinbayes.errors import cannot_write
 from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report import quality, sentences, tables
@@ -44,17 +44,15 @@ def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> 
     ------
     InputError
         The folder does not exist or cannot be written.
+    MachineError
+        The disk is full.
     """
     path = Path(path)
     page = render(fit, yardsticks)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        temporary.write_text(page, encoding="utf-8")
-        temporary.replace(path)
+        write_atomically(path, page.encode("utf-8"))
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from None
-    finally:
-        temporary.unlink(missing_ok=True)
+        raise cannot_write(path, error, begun=False) from None
     return path
 
 

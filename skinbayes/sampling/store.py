@@ -8,19 +8,20 @@ complete run up to some block.
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from skinbayes.errors import FingerprintMismatch, InputError
+from skinbayes.atomic import PARTIAL, write_atomically
+from skinbayes.errors import FingerprintMismatch, InputError, cannot_write
 from skinbayes.sampling.advance import Block
+from skinbayes.sampling.watched import WatchedDirectory
 
 HEADER = "header.json"
-PARTIAL = ".partial"
 FORMAT = 1
 
 
@@ -36,8 +37,10 @@ class SampleStore:
     def __init__(self, path: str | Path, resume: bool = False) -> None:
         self.path = Path(path)
         self._resume = resume
+        self._header = b""
         self._digest = ""
-        self._count = 0
+        self._rounds: list[list[Block]] = []
+        self._watched: WatchedDirectory | None = None
 
     def open(self, identity: Mapping[str, Any]) -> list[list[Block]]:
         """Claim the directory for a run, or take up the run it holds.
@@ -61,6 +64,7 @@ class SampleStore:
             raise InputError(f"{self.path}: a file found, a directory expected for the steps of a run.")
         wanted = json.loads(json.dumps(dict(identity)))
         self._digest = hashlib.sha256(json.dumps(wanted, sort_keys=True).encode()).hexdigest()
+        self._header = (json.dumps({"format": FORMAT, "identity": wanted}, indent=2) + "\n").encode()
         for leftover in self.path.glob(f"*{PARTIAL}"):
             leftover.unlink(missing_ok=True)
         numbers = sorted(int(file.stem.removeprefix("segment-")) for file in self.path.glob("segment-*.h5"))
@@ -70,8 +74,7 @@ class SampleStore:
                 raise InputError(
                     f"{header}: missing, though steps of a run are beside it. The run cannot be continued."
                 )
-            content = json.dumps({"format": FORMAT, "identity": wanted}, indent=2) + "\n"
-            self._publish(header, lambda partial: partial.write_text(content, encoding="utf-8"))
+            self._begin()
             return []
         if not self._resume:
             raise InputError(
@@ -84,14 +87,59 @@ class SampleStore:
             raise InputError(
                 f"{self._segment(lost)}: missing, though later steps are there. The run cannot be continued."
             )
-        self._count = len(numbers)
-        return [self._read(self._segment(number), wanted) for number in numbers]
+        self._rounds = [self._read(self._segment(number), wanted) for number in numbers]
+        self._watched = WatchedDirectory(self.path)
+        return list(self._rounds)
+
+    @property
+    def has_steps(self) -> bool:
+        """Whether there are steps, on disk or, if that failed, in memory."""
+        return bool(self._rounds)
 
     def append(self, blocks: list[Block]) -> None:
-        """Add the next block of every ensemble; on return it is on disk."""
-        target = self._segment(self._count + 1)
-        self._publish(target, lambda partial: self._write(partial, blocks))
-        self._count += 1
+        """Add the next block of every ensemble; on return it is on disk, as are all before it.
+
+        Raises
+        ------
+        FolderGone
+            The directory is no longer where it was; nothing is made in its place.
+        MachineError
+            It cannot be written, because the disk is full for example.
+        """
+        self._rounds.append(blocks)
+        self.complete()
+
+    def complete(self) -> None:
+        """Write every file of the run that is not there, as when somebody removed it; raises as :meth:`append` does."""
+        if self._watched is None:
+            return
+        try:
+            self._watched.check()
+            names = {file.name for file in self.path.iterdir()}
+        except OSError as error:
+            raise cannot_write(self.path, error) from error
+        if HEADER not in names:
+            self._publish(self.path / HEADER, self._header)
+        for number, blocks in enumerate(self._rounds, start=1):
+            target = self._segment(number)
+            if target.name not in names:
+                self._publish(target, self._image(blocks))
+
+    def copy_to(self, path: Path) -> SampleStore:
+        """Write the run once more, into a directory that holds none."""
+        copy = SampleStore(path)
+        copy._header, copy._digest, copy._rounds = self._header, self._digest, self._rounds
+        copy._begin()
+        copy.complete()
+        return copy
+
+    def _begin(self) -> None:
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(self.path, error, begun=False) from error
+        self._publish(self.path / HEADER, self._header)
+        self._watched = WatchedDirectory(self.path)
 
     def _segment(self, number: int) -> Path:
         return self.path / f"segment-{number:06d}.h5"
@@ -114,25 +162,25 @@ class SampleStore:
                 "Use the same model, data and settings, or another directory."
             )
 
-    def _publish(self, target: Path, write: Callable[[Path], object]) -> None:
-        partial = target.with_name(target.name + PARTIAL)
+    def _publish(self, target: Path, content: bytes) -> None:
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            write(partial)
-            _to_disk(partial)
-            partial.replace(target)
-            _to_disk(self.path)
+            write_atomically(target, content)
         except OSError as error:
-            raise InputError(f"{target}: cannot be written ({error}).") from error
+            if self._watched is not None:
+                self._watched.check()
+            raise cannot_write(target, error) from error
 
-    def _write(self, partial: Path, blocks: list[Block]) -> None:
+    def _image(self, blocks: list[Block]) -> bytes:
+        """The content of a segment. It is made in memory, because HDF5 does not survive a full disk."""
         import h5py
 
-        with h5py.File(partial, "w", locking=False) as file:
+        image = io.BytesIO()
+        with h5py.File(image, "w") as file:
             file.attrs["identity"] = self._digest
             for name, values in _arrays(blocks).items():
                 # Checksums make a damaged file an error when it is read.
                 file.create_dataset(name, data=values, chunks=values.shape, fletcher32=True)
+        return image.getvalue()
 
     def _read(self, path: Path, identity: Mapping[str, Any]) -> list[Block]:
         import h5py
@@ -196,14 +244,3 @@ def _blocks(arrays: Mapping[str, np.ndarray]) -> list[Block]:
         )
         for index in range(len(arrays["positions"]))
     ]
-
-
-def _to_disk(path: Path) -> None:
-    """Force a file, or the names in a directory, to disk."""
-    if path.is_dir() and os.name != "posix":
-        return  # a directory cannot be opened there
-    handle = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

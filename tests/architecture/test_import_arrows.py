@@ -15,6 +15,7 @@ STATISTICS = {"statistics", "sampling", "diagnose"}
 MAY_KNOW: dict[str, set[str]] = {
     "errors": set(),
     "arrays": set(),
+    "atomic": set(),
     "constants": set(),
     "vocabulary": set(),
     "units": {"errors", "arrays", "vocabulary", "constants"},
@@ -26,19 +27,19 @@ MAY_KNOW: dict[str, set[str]] = {
     "lubrication": {"errors", "arrays", "constants", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
-    "sampling": {"errors", "arrays", "statistics"},
+    "sampling": {"errors", "arrays", "atomic", "statistics"},
     "diagnose": {"errors", "arrays", "statistics"},
     # where they meet
     "files": {*WORDS, "units", "roughness", "statistics"},
     "forward": {*WORDS, *PHYSICS},
     "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "skinbayes"},
-    "fit": {*WORDS, "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
+    "fit": {*WORDS, "atomic", "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
+    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
                "skinbayes"},
-    "cli": {*WORDS, "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
+    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"errors", "files", "problem", "fit", "comparison"},
 }  # fmt: skip
