@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
+from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError
 from skinbayes.fit.result import Fit
 
@@ -27,13 +29,17 @@ YARDSTICK_MODELS = "yardstick-models"
 
 def save_fit(fit: Fit, path: Path) -> Path:
     """Write a fit as netCDF; the file appears whole or not at all."""
-    temporary = path.with_name(path.name + ".part")
-    mode: Literal["w", "a"] = "w"
-    for name, group in fit.groups.items():
-        dataset = group.assign_attrs(skinbayes=json.dumps(fit.provenance)) if name == "posterior" else group
-        dataset.to_netcdf(temporary, mode=mode, group=name, engine="h5netcdf")
-        mode = "a"
-    temporary.replace(path)
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    image = io.BytesIO()  # in memory, because HDF5 does not survive a full disk
+    with h5netcdf.File(image, "w") as file:
+        for name, group in fit.groups.items():
+            dataset = (
+                group.assign_attrs(skinbayes=json.dumps(fit.provenance)) if name == "posterior" else group
+            )
+            dataset.dump_to_store(H5NetCDFStore(file.create_group(name)))
+    write_atomically(path, image.getvalue())
     return path
 
 

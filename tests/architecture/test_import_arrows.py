@@ -54,6 +54,7 @@ HOMES: dict[str, set[str]] = {
     "corner": {"plot"},
     "emcee": {"sampling"},
     "h5py": {"sampling", "fit"},
+    "h5netcdf": {"fit"},
     "jinja2": {"report"},
     "matplotlib": {"plot", "report"},
     "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "vocabulary"},
