@@ -80,7 +80,9 @@ class RunDirectory:
                 raise
         except OSError as error:
             if error.errno in NO_SPACE:
-                raise cannot_write(self.path, error) from None
+                raise MachineError(
+                    f"{cannot_write(self.path, error)} Make room, and repeat the command."
+                ) from None
             raise InputError(
                 f"{self.path}: cannot be used for a run ({error.strerror or error}); expected a folder that can be written"
             ) from None
