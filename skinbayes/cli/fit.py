@@ -71,20 +71,17 @@ def fit(
     as_json: bool,
 ) -> int:
     """Sample the posterior until autocorrelation, effective sample size and R-hat agree that it is enough."""
-    from skinbayes.cli.progress import counted_progress, sampling_progress
+    from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
     from skinbayes.problem import load_problem
 
     problem = load_problem(model, data=data)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     try:
-        if problem.observations:
-            with counted_progress("building the table") as count:
-                problem.prepare(count, cores)
-        with sampling_progress(ess) as progress:
+        with fit_progress(ess) as (count, progress):
             result = sample(
                 problem, seed=seed, ess=ess, cores=cores, directory=directory, resume=resume, progress=progress,
-                max_steps=max_steps,
+                preparing=count, max_steps=max_steps,
             )  # fmt: skip
     except KeyboardInterrupt:
         click.echo(

@@ -17,12 +17,12 @@ from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
 from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
-from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
 from skinbayes.cli.template import template
-from skinbayes.errors import InputError, RepairWarning
+from skinbayes.errors import NO_SPACE, InputError, MachineError, RepairWarning
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 """Set to 1 unless the user set them: the matrices are small, and threads of linear algebra stand in the way of the worker
@@ -45,7 +45,8 @@ def cli() -> None:
     RUN is a directory that 'skinbayes fit' wrote.
 
     Every command takes --json: one JSON document on standard output, SI values.
-    Exit status: 0 done, 2 bad input, 3 finished without converging, 130 interrupted.
+    Exit status: 0 done, 2 bad input, 3 finished without converging, 4 stopped by the machine (disk full, folder gone,
+    process killed, no memory; what was stored is kept), 130 interrupted.
     """
 
 
@@ -67,6 +68,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except InputError as error:
         click.echo(f"skinbayes: {_printable(str(error))}", err=True)
         status = EXIT_BAD_INPUT
+    except MachineError as error:
+        click.echo(f"skinbayes: {_printable(str(error))}", err=True)
+        status = EXIT_MACHINE
+    except MemoryError:
+        click.echo("skinbayes: there is not enough memory", err=True)
+        status = EXIT_MACHINE
     except click.UsageError as error:
         error.show()
         status = EXIT_BAD_INPUT
@@ -83,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         click.echo(f"skinbayes: {_printable(place)}{error.strerror or error}", err=True)
-        status = EXIT_BAD_INPUT
+        status = EXIT_MACHINE if error.errno in NO_SPACE else EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
 
 

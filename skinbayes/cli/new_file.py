@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError
 
 
 def refuse_existing(paths: Sequence[Path], overwrite: bool) -> None:
     """InputError for the first path that exists, unless the user said that it may be overwritten."""
     for path in paths:
-        if path.exists() and not overwrite:
+        if (path.exists() or path.is_symlink()) and not overwrite:
             raise InputError(f"{path}: exists already; choose another name, or add --overwrite")
 
 
 def write_text(path: Path, text: str) -> None:
     """Write a UTF-8 file with line feeds, and its folder; all of it or nothing."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(path.name + ".part")
-    unfinished.write_bytes(text.encode("utf-8"))
-    unfinished.replace(path)
+    write_atomically(path, text.encode("utf-8"))

@@ -5,9 +5,27 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from skinbayes.errors import InputError
+
 if TYPE_CHECKING:
     from skinbayes.comparison import Yardsticks
     from skinbayes.fit import Fit
+
+
+MARK = b'<meta name="generator" content="skinbayes">'
+"""By which a page of skinbayes is known, near its beginning."""
+
+
+def refuse_other_files(page: Path) -> None:
+    """InputError if something else than a page of skinbayes stands where a page is to be written."""
+    if page.is_dir():
+        raise InputError(f"{page}: a folder; expected the name of a page to write, such as report.html")
+    if page.is_file():
+        with page.open("rb") as file:
+            if MARK in file.read(1000):
+                return
+    if page.exists() or page.is_symlink():
+        raise InputError(f"{page}: exists already and is no page of skinbayes; choose another name")
 
 
 def write_page(fit: Fit, page: Path, run: Path | None, with_yardsticks: bool = True) -> Yardsticks | None:
@@ -24,11 +42,17 @@ def write_page(fit: Fit, page: Path, run: Path | None, with_yardsticks: bool = T
     -------
     Yardsticks or None
         The fit beside its yardsticks, if it has any
+
+    Raises
+    ------
+    InputError
+        Something else stands under the name of the page.
     """
     from skinbayes.cli.progress import yardstick_progress
     from skinbayes.comparison import against_yardsticks
     from skinbayes.report import write_report
 
+    refuse_other_files(page)
     yardsticks = None
     if with_yardsticks and fit.problem is not None and fit.problem.spec.yardsticks:
         with yardstick_progress() as progress:

@@ -78,6 +78,22 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
+def fit_progress(ess: float) -> Iterator[tuple[Callable[[int, int], None], Callable[[Progress], None]]]:
+    """Yield what to call while a table is built, and after every block of steps; one bar makes way for the other."""
+    with ExitStack() as shown:
+        count = shown.enter_context(counted_progress("building the table"))
+        sampling: list[Callable[[Progress], None]] = []
+
+        def update(progress: Progress) -> None:
+            if not sampling:
+                shown.close()
+                sampling.append(shown.enter_context(sampling_progress(ess)))
+            sampling[0](progress)
+
+        yield count, update
+
+
+@contextmanager
 def yardstick_progress() -> Iterator[Callable[[str, Progress], None]]:
     """Yield what to call with the name of a yardstick after every block of its steps."""
     with ExitStack() as shown:

@@ -68,6 +68,11 @@ def _fitted(name: str, problem: Problem, fit: Fit, directory: Path | None, progr
             f"expected a model of {', '.join(problem.observables)} with the same use of known spreads"
         )
     folder = None if directory is None else directory / FOLDER / yardstick.name
+    for inside in () if folder is None else (folder.parent, folder):
+        if inside.is_symlink():
+            raise InputError(
+                f"{inside}: a link found, a folder of the run itself expected; nothing is written through links"
+            )
     resume = folder is not None and folder.is_dir()
     if folder is not None and resume:
         try:

@@ -16,6 +16,12 @@ SUMMARY = "summary.csv"
 STEPS = "steps"
 """Folder of the sampler's step store inside a run directory."""
 
+YARDSTICK_MODELS = "yardstick-models"
+"""Folder of the user's own yardsticks inside a run directory."""
+
+FORMAT = "skinbayes run 1"
+"""Under the key ``format`` of ``run.json``: the mark of a run directory. Nobody else writes it by chance."""
+
 
 @dataclass(frozen=True)
 class Manifest:
@@ -57,6 +63,8 @@ def read_manifest(directory: Path) -> Manifest | None:
         note = read_note(directory / RUN)
     except FileNotFoundError:
         return None
+    if note.get("format") != FORMAT:
+        raise DamagedFile(f"'format' is not {FORMAT!r}")
     for name, accepts in _ACCEPTED.items():
         if not accepts(note.get(name)):
             raise DamagedFile(f"'{name}' is not as this version writes it")
@@ -65,7 +73,7 @@ def read_manifest(directory: Path) -> Manifest | None:
 
 def write_manifest(directory: Path, manifest: Manifest) -> None:
     """Write ``run.json``."""
-    write_atomically(directory / RUN, sealed_note(vars(manifest)))
+    write_atomically(directory / RUN, sealed_note({"format": FORMAT, **vars(manifest)}))
 
 
 def trouble(directory: Path, manifest: Manifest) -> dict[str, str]:

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.fit.manifest import STEPS
 from skinbayes.fit.references import references
 from skinbayes.fit.result import Fit
-from skinbayes.fit.storage import claim_run, save_run
+from skinbayes.fit.run_directory import RunDirectory
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
 
 if TYPE_CHECKING:
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from skinbayes.problem import Problem
     from skinbayes.sampling.chains import Chains
     from skinbayes.sampling.ensembles import Progress
+    from skinbayes.sampling.options import SamplerOptions
 
 DEFAULT_SEED = 1
 """Seed when none is given: the same command gives the same draws."""
@@ -43,6 +43,7 @@ def sample(
     directory: str | Path | None = None,
     resume: bool = False,
     progress: Callable[[Progress], None] | None = None,
+    preparing: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Fit:
     """Sample the posterior of a problem with emcee until the stopping rule is met.
@@ -61,6 +62,7 @@ def sample(
     directory : where to keep steps and result; None keeps everything in memory
     resume : continue the run in ``directory``
     progress : called after every block of steps
+    preparing : called with the number done and their total while tables are built before sampling
     options : further fields of ``skinbayes.sampling.SamplerOptions`` (``max_steps``, ``walkers``, ``ensembles``, …)
 
     Returns
@@ -71,7 +73,11 @@ def sample(
     Raises
     ------
     InputError
-        The model has no data or nothing to infer, an option is out of range, or the stored run is another one.
+        The model has no data or nothing to infer, an option is out of range, or ``directory`` is neither new nor empty nor a
+        run of this problem, or another process writes there.
+    MachineError
+        The disk is full, the directory was carried off, a worker process died twice, or memory did not suffice; steps
+        stored before are kept, and the message says where.
     KeyboardInterrupt
         Interrupted; with ``directory`` the steps so far are kept.
 
@@ -80,9 +86,7 @@ def sample(
     RepairWarning
         Files of the run to be resumed were damaged or missing, and what was done about it.
     """
-    from skinbayes.sampling.ensembles import run_ensembles
     from skinbayes.sampling.options import SamplerOptions
-    from skinbayes.sampling.store import SampleStore
 
     if not problem.observations and problem.spec.observables:
         raise InputError(
@@ -96,25 +100,38 @@ def sample(
         seed=seed, ess=ess, cores=cores, **{"costly": problem.forward.costly, **options}
     )
     settings.walkers_for(problem.dimension)  # refuses too few before anything is written
-    folder = None if directory is None else Path(directory)
-    manifest = None if folder is None else claim_run(folder, problem, resume)
+    if directory is None:
+        return _fit(problem, settings, None, progress, preparing)
+    with RunDirectory(Path(directory), problem, resume) as run:
+        fit = _fit(problem, settings, run, progress, preparing)
+        run.keep(fit)
+    return fit
+
+
+def _fit(
+    problem: Problem,
+    settings: SamplerOptions,
+    run: RunDirectory | None,
+    progress: Callable[[Progress], None] | None,
+    preparing: Callable[[int, int], None] | None,
+) -> Fit:
+    from skinbayes.sampling.ensembles import run_ensembles
+
     started, processor = time.perf_counter(), time.process_time()
-    problem.prepare(cores=cores)  # before work is shared out, so that it is done once
-    target = problem.target()
-    store = None if folder is None else SampleStore(folder / STEPS, resume=resume)
-    chains = run_ensembles(target, settings, store=store, progress=progress)
+    problem.prepare(preparing, settings.cores)  # before work is shared out, so that it is done once
+    if run is not None:
+        run.check()  # a table may take minutes
+    store = None if run is None else run.store
+    chains = run_ensembles(problem.target(), settings, store=store, progress=progress)
     sampled = time.perf_counter()
-    groups = _groups(problem, chains, seed)
+    groups = _groups(problem, chains, settings.seed)
     seconds = {
         "sampling": sampled - started,
         "total": time.perf_counter() - started,
         "processor": time.process_time() - processor,
     }
     provenance = _provenance(problem, chains, settings) | {"seconds": seconds}
-    fit = Fit(groups=groups, provenance=provenance, problem=problem)
-    if folder is not None and manifest is not None:
-        save_run(fit, folder, manifest)
-    return fit
+    return Fit(groups=groups, provenance=provenance, problem=problem)
 
 
 def _groups(problem: Problem, chains: Chains, seed: int) -> dict[str, xarray.Dataset]:
@@ -129,7 +146,7 @@ def _groups(problem: Problem, chains: Chains, seed: int) -> dict[str, xarray.Dat
     }
 
 
-def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, Any]:
+def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> dict[str, Any]:
     report = chains.report
     dataset = problem.dataset
     data: dict[str, Any] = {"fingerprint": problem.data_fingerprint}

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import write_atomically
-from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning
-from skinbayes.fit.manifest import (
-    RESULT,
-    RUN,
-    STEPS,
-    SUMMARY,
-    Manifest,
-    read_manifest,
-    trouble,
-    write_manifest,
-)
+from skinbayes.errors import InputError, RepairWarning
+from skinbayes.fit.manifest import RESULT, RUN, STEPS, YARDSTICK_MODELS, Manifest, read_manifest, trouble
 from skinbayes.fit.netcdf import read_result, result_image
 from skinbayes.fit.result import Fit
-from skinbayes.sealed import DamagedFile, put_aside
+from skinbayes.sealed import DamagedFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,31 +20,11 @@ if TYPE_CHECKING:
     from skinbayes.files.dataset import Dataset
     from skinbayes.problem import Problem
 
-YARDSTICK_MODELS = "yardstick-models"
-"""Folder of the user's own yardsticks inside a run directory."""
-
 
 def save_fit(fit: Fit, path: Path) -> Path:
     """Write a fit as netCDF; the file appears whole or not at all, and shows any damage when it is read."""
-    _write(path, result_image(fit.groups, fit.provenance))
+    write_atomically(path, result_image(fit.groups, fit.provenance))
     return path
-
-
-def save_run(fit: Fit, directory: Path, manifest: Manifest) -> None:
-    """Write result and summary of a run into its directory, and their checksums into what ``claim_run`` gave."""
-    table = fit.summary(derived=True).to_csv(index_label="parameter")
-    written = {
-        RESULT: _write(directory / RESULT, result_image(fit.groups, fit.provenance)),
-        SUMMARY: _write(directory / SUMMARY, table.encode()),
-    }
-    # last: a result that is listed is one that was finished
-    write_manifest(directory, replace(manifest, files={**manifest.files, **written}))
-
-
-def _write(path: Path, content: bytes) -> str:
-    """Write a file and return its sha256, that of the content as it was meant."""
-    write_atomically(path, content)
-    return hashlib.sha256(content).hexdigest()
 
 
 def load_fit(path: str | Path) -> Fit:
@@ -107,7 +77,9 @@ def _unfinished(path: Path) -> str:
 
 
 def _again(run: Path) -> str:
-    return f"'skinbayes fit MODEL -o {run} --resume' with the model, data and options of the run writes it again"
+    return (
+        f"'skinbayes fit MODEL -o {run} --resume' with the model, data and options of the run writes it again"
+    )
 
 
 def _undamaged(run: Path) -> Manifest:
@@ -127,138 +99,6 @@ def _undamaged(run: Path) -> Manifest:
     return manifest
 
 
-def claim_run(directory: Path, problem: Problem, resume: bool) -> Manifest:
-    """Make the directory of a run and put model file, data and spectrum into it, so that it can be read on its own.
-
-    Nothing is written into a directory that holds another run.
-
-    Parameters
-    ----------
-    directory : the run directory
-    problem : what is to be sampled
-    resume : the directory may hold a run of this problem, finished or not
-
-    Returns
-    -------
-    Manifest
-        what ``run.json`` says
-
-    Raises
-    ------
-    InputError
-        It holds a run that is not to be continued or cannot be, or it cannot be written.
-
-    Warns
-    -----
-    RepairWarning
-        Copies of model and data were damaged or missing; they were written again, and what was there was put aside.
-    """
-    try:
-        holds_result = (directory / RESULT).exists()
-        if not resume and (holds_result or (directory / STEPS).is_dir()):
-            raise InputError(
-                f"{directory}: holds {'a result' if holds_result else 'an unfinished run'} already; "
-                "give another folder, or continue it with --resume"
-            )
-        stored = _held(directory, problem, resume)
-        for path in _own_yardsticks(problem):
-            if not path.is_file():
-                raise InputError(
-                    f"{problem.spec.path}: yardsticks: no file {path}; expected a model file to compare with"
-                )
-        wrong = {} if stored is None or not resume else trouble(directory, stored)
-        for name in wrong:
-            if not (directory / name).exists():
-                _warn(f"{directory / name}: missing; written again from the model and data that were given")
-        if stored is not None and resume and not wrong:
-            return stored
-        directory.mkdir(parents=True, exist_ok=True)
-        return _write_inputs(directory, problem)
-    except InputError:
-        raise
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise InputError(
-            f"{directory}: cannot be used for a run ({reason}); expected a folder that can be written"
-        ) from None
-
-
-def _own_yardsticks(problem: Problem) -> list[Path]:
-    """Yardsticks that are no shipped models."""
-    return [Path(name) for name in problem.spec.yardsticks if Path(name).suffix == ".toml"]
-
-
-def _held(directory: Path, problem: Problem, resume: bool) -> Manifest | None:
-    """What ``run.json`` says; None if there is none, or if it was damaged and the steps are of this problem all the same."""
-    from skinbayes.sampling.store import stored_fingerprint
-
-    try:
-        stored, damage = read_manifest(directory), None
-    except DamagedFile as error:
-        stored, damage = None, error
-    found = stored.fingerprint if stored is not None else stored_fingerprint(directory / STEPS)
-    if resume and found is not None and found != problem.fingerprint:
-        name = "" if stored is None else f" of '{stored.model}'"
-        raise FingerprintMismatch(
-            f"{directory}: holds a run{name} with another model, data, prior or version than "
-            f"'{problem.name}' here; give another folder"
-        )
-    if damage is not None:
-        if not resume or found is None:
-            raise InputError(
-                f"{directory / RUN}: damaged ({damage}), and the steps beside it do not tell whose run it was; "
-                "give another folder"
-            )
-        put_aside(directory / RUN)
-        _warn(f"{directory / RUN}: damaged ({damage}); written again")
-    return stored
-
-
-def _write_inputs(directory: Path, problem: Problem) -> Manifest:
-    files = {"model.toml": _copy(problem.spec.path, directory / "model.toml")}
-    note: dict[str, Any] = {"data": None, "surface": None, "rheology": None, "rows": None}
-    settings = {name: text for name, text in problem.settings.items() if name != "surface"}
-    if "surface" in problem.settings and problem.surface_file is None:
-        settings["surface"] = problem.settings["surface"]
-    if problem.dataset is not None:
-        source = Path(problem.dataset.path)
-        folder = directory / "data"
-        folder.mkdir(exist_ok=True)
-        note["data"] = f"data/{source.name}"
-        files[note["data"]] = _copy(source, folder / source.name)
-        note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
-        provenance = source.with_name("provenance.toml")
-        if source.name == "data.csv" and provenance.exists():
-            files["data/provenance.toml"] = _copy(provenance, folder / provenance.name)
-            note["data"] = "data"
-    if problem.spec.rheology is not None and Path(problem.spec.rheology).is_file():
-        files["rheology.csv"] = _copy(Path(problem.spec.rheology), directory / "rheology.csv")
-        note["rheology"] = "rheology.csv"
-    if problem.surface_file is not None:
-        files["spectrum.csv"] = _copy(problem.surface_file, directory / "spectrum.csv")
-        note["surface"] = "spectrum.csv"
-    for path in _own_yardsticks(problem):
-        (directory / YARDSTICK_MODELS).mkdir(exist_ok=True)
-        files[f"{YARDSTICK_MODELS}/{path.name}"] = _copy(path, directory / YARDSTICK_MODELS / path.name)
-    manifest = Manifest(problem.name, problem.fingerprint, **note, settings=settings, files=files)
-    # last, so that a directory with this file is complete
-    write_manifest(directory, manifest)
-    return manifest
-
-
-def _copy(source: Path, copy: Path) -> str:
-    """Copy a file, put aside what else is there, and return the sha256 of the content."""
-    content = source.read_bytes()
-    # the user may point at the copies of an earlier run in this very directory
-    if copy.exists() and not copy.samefile(source) and copy.read_bytes() != content:
-        aside = put_aside(copy)
-        _warn(
-            f"{copy}: damaged, or changed since the run was made; renamed to {aside.name}, and written again "
-            "from the model and data that were given"
-        )
-    return _write(copy, content)
-
-
 def _warn(message: str) -> None:
     warnings.warn(message, RepairWarning, stacklevel=3)
 
@@ -269,10 +109,10 @@ def _rebuild(run: Path | None, manifest: Manifest | None, provenance: Mapping[st
 
     reason = "what they say is not what was fitted"
     try:
-        if run is None or manifest is None:
-            problem = load_problem(provenance["model_path"])
-        else:
+        if run is not None and manifest is not None:
             problem = _from_copies(run, manifest)
+        else:  # a bare file
+            problem = load_problem(provenance["model_path"])
         if _is_same(problem, provenance):
             return _renamed(problem, provenance)
     except (InputError, OSError, ValueError, KeyError) as error:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import write_atomically
-from skinbayes.errors import InputError
+from skinbayes.errors import cannot_write
 from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report import quality, sentences, tables
@@ -44,13 +44,15 @@ def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> 
     ------
     InputError
         The folder does not exist or cannot be written.
+    MachineError
+        The disk is full.
     """
     path = Path(path)
     page = render(fit, yardsticks)
     try:
         write_atomically(path, page.encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from None
+        raise cannot_write(path, error, begun=False) from None
     return path
 
 

@@ -82,6 +82,8 @@ def run_ensembles(
         On Ctrl-C, with the steps of whole blocks so far.
     InputError
         If starts are impossible, or the store cannot be used (see :meth:`SampleStore.open`).
+    MachineError
+        If steps cannot be stored any more, or a worker process died twice; steps stored before are kept.
     """
     moves = moves or moves_for(options.costly)
     rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
@@ -97,6 +99,8 @@ def run_ensembles(
                 if progress is not None:
                     progress(Progress(steps, last, report))
                 if report is not None and (report.converged or steps >= last):
+                    if store is not None:
+                        store.complete()
                     return _chains(target, options, rounds, report)
                 blocks = advance_all(states)
                 if store is not None:
@@ -104,6 +108,8 @@ def run_ensembles(
                 rounds.append(blocks)
                 states = gathered(blocks, len(rounds), options.seed)
     except KeyboardInterrupt:
+        if store is not None:
+            store.complete()
         if not rounds:
             raise SamplingInterrupted(None) from None
         report = _judged(target, options, rounds)

@@ -16,9 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from skinbayes.atomic import PARTIAL, write_atomically
-from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning
+from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning, cannot_write
 from skinbayes.sampling.advance import Block
 from skinbayes.sampling.segments import OtherRun, read_segment, segment_image
+from skinbayes.sampling.watched import WatchedDirectory
 from skinbayes.sealed import DAMAGED, DamagedFile, content_digest, put_aside, read_note, sealed_note
 
 HEADER = "header.json"
@@ -77,8 +78,10 @@ class SampleStore:
     def __init__(self, path: str | Path, resume: bool = False) -> None:
         self.path = Path(path)
         self._resume = resume
+        self._header = b""
         self._digest = ""
         self._rounds: list[list[Block]] = []
+        self._watched: WatchedDirectory | None = None
 
     def open(self, identity: Mapping[str, Any]) -> list[list[Block]]:
         """Claim the directory for a run, or take up the run it holds.
@@ -96,7 +99,7 @@ class SampleStore:
         FingerprintMismatch
             If the directory holds a run with another identity; the parts that differ are named.
         InputError
-            If it holds a run and this one was not to resume, or cannot be written.
+                If it holds a run and this one was not to resume, or cannot be written.
 
         Warns
         -----
@@ -107,6 +110,7 @@ class SampleStore:
             raise InputError(f"{self.path}: a file found, a directory expected for the steps of a run.")
         wanted = json.loads(json.dumps(dict(identity)))
         self._digest = content_digest(wanted)
+        self._header = sealed_note({"format": FORMAT, "identity": wanted})
         for leftover in self.path.glob(f"*{PARTIAL}"):
             leftover.unlink(missing_ok=True)
         segments = self._segments()
@@ -133,14 +137,61 @@ class SampleStore:
                 trouble = "missing"
             if trouble:
                 _warn(f"{header}: {trouble}; written again.")
-            self._publish(header, sealed_note({"format": FORMAT, "identity": wanted}))
+            self._begin()
+        else:
+            self._watched = WatchedDirectory(self.path)
         return list(self._rounds)
 
+    @property
+    def has_steps(self) -> bool:
+        """Whether there are steps, on disk or, if that failed, in memory."""
+        return bool(self._rounds)
+
     def append(self, blocks: list[Block]) -> None:
-        """Add the next block of every ensemble; on return it is on disk."""
-        before = self._rounds[-1] if self._rounds else None
-        self._publish(self._segment(len(self._rounds) + 1), segment_image(blocks, self._digest, before))
+        """Add the next block of every ensemble; on return it is on disk, as are all before it.
+
+        Raises
+        ------
+        FolderGone
+            The directory is no longer where it was; nothing is made in its place.
+        MachineError
+            It cannot be written, because the disk is full for example.
+        """
         self._rounds.append(blocks)
+        self.complete()
+
+    def complete(self) -> None:
+        """Write every file of the run that is not there, as when somebody removed it; raises as :meth:`append` does."""
+        if self._watched is None:
+            return
+        try:
+            self._watched.check()
+            names = {file.name for file in self.path.iterdir()}
+        except OSError as error:
+            raise cannot_write(self.path, error) from error
+        if HEADER not in names:
+            self._publish(self.path / HEADER, self._header)
+        for number, blocks in enumerate(self._rounds, start=1):
+            target = self._segment(number)
+            if target.name not in names:
+                before = self._rounds[number - 2] if number > 1 else None
+                self._publish(target, segment_image(blocks, self._digest, before))
+
+    def copy_to(self, path: Path) -> SampleStore:
+        """Write the run once more, into a directory that holds none."""
+        copy = SampleStore(path)
+        copy._header, copy._digest, copy._rounds = self._header, self._digest, self._rounds
+        copy._begin()
+        copy.complete()
+        return copy
+
+    def _begin(self) -> None:
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(self.path, error, begun=False) from error
+        self._publish(self.path / HEADER, self._header)
+        self._watched = WatchedDirectory(self.path)
 
     def _segment(self, number: int) -> Path:
         return self.path / f"segment-{number:06d}.h5"
@@ -195,10 +246,11 @@ class SampleStore:
 
     def _publish(self, target: Path, content: bytes) -> None:
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
             write_atomically(target, content)
         except OSError as error:
-            raise InputError(f"{target}: cannot be written ({error}).") from error
+            if self._watched is not None:
+                self._watched.check()
+            raise cannot_write(target, error) from error
 
 
 def _warn(message: str) -> None:

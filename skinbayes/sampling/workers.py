@@ -8,9 +8,9 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
 from typing import TypeAlias
 
+from skinbayes.errors import MachineError
 from skinbayes.sampling.advance import Block, EnsembleState, advance
 from skinbayes.sampling.moves import MoveFactory
 from skinbayes.sampling.options import SamplerOptions
@@ -42,36 +42,77 @@ def advancing(target: Target, options: SamplerOptions, moves: MoveFactory) -> It
             advance(target, state, options.block_steps, options.vectorize, moves) for state in states
         ]
         return
-    crew = _start(count, target, options, moves)
+    crew: list[_Worker] = []
     try:
+        for _ in range(count):
+            crew.append(_Worker((target, options.block_steps, options.vectorize, moves)))
         yield lambda states: _share_out(crew, states)
     finally:
-        for connection in crew:
-            connection.close()
-        for process in crew.values():
-            process.terminate()
-        for process in crew.values():
-            process.join()
+        for worker in crew:
+            worker.stop()
 
 
-def _start(
-    count: int, target: Target, options: SamplerOptions, moves: MoveFactory
-) -> dict[Connection, BaseProcess]:
-    # Not fork: a copy of this process could inherit locks that other threads hold.
-    forkserver = "forkserver" in multiprocessing.get_all_start_methods()
-    context = (
-        multiprocessing.get_context("forkserver") if forkserver else multiprocessing.get_context("spawn")
-    )
-    crew: dict[Connection, BaseProcess] = {}
-    with _interrupts_held_back():
-        for _ in range(count):
-            here, there = context.Pipe()
-            arguments = (there, target, options.block_steps, options.vectorize, moves)
-            process = context.Process(target=_serve, args=arguments, daemon=True)
-            process.start()
-            there.close()
-            crew[here] = process
-    return crew
+class _Worker:
+    """A process that advances ensembles; one that dies is started again, once, and gets the same ensemble.
+
+    Parameters
+    ----------
+    task : arguments of :func:`advance` but for the state
+    """
+
+    def __init__(self, task: tuple[Target, int, bool, MoveFactory]) -> None:
+        self._task = task
+        self._state: tuple[int, EnsembleState] | None = None
+        self._died = False
+        self._start()
+
+    def _start(self) -> None:
+        # Not fork: a copy of this process could inherit locks that other threads hold.
+        forkserver = "forkserver" in multiprocessing.get_all_start_methods()
+        context = (
+            multiprocessing.get_context("forkserver") if forkserver else multiprocessing.get_context("spawn")
+        )
+        self.connection, there = context.Pipe()
+        self._process = context.Process(target=_serve, args=(there, *self._task), daemon=True)
+        with _interrupts_held_back():
+            self._process.start()
+        there.close()
+
+    def send(self, index: int, state: EnsembleState) -> None:
+        """Give it an ensemble to advance."""
+        self._state = index, state
+        try:
+            self.connection.send(self._state)
+        except OSError:
+            self._again()
+
+    def receive(self) -> tuple[int, Block | Exception] | None:
+        """The number of the ensemble and its block; None if it died and begins anew."""
+        try:
+            reply: tuple[int, Block | Exception] = self.connection.recv()
+        except (EOFError, OSError):
+            self._again()
+            return None
+        return reply
+
+    def _again(self) -> None:
+        """Start the process once more, with the ensemble it was to advance: a block depends on its state alone."""
+        if self._died:
+            raise MachineError(
+                "A worker process of the sampler died twice, perhaps for want of memory: fewer --cores need less. "
+                "(A script that samples on several cores does so under: if __name__ == '__main__'.)"
+            )
+        self._died = True
+        self.stop()
+        self._start()
+        if self._state is not None:
+            self.send(*self._state)
+
+    def stop(self) -> None:
+        """End the process."""
+        self.connection.close()
+        self._process.terminate()
+        self._process.join()
 
 
 @contextmanager
@@ -111,30 +152,25 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-def _share_out(crew: dict[Connection, BaseProcess], states: list[EnsembleState]) -> list[Block]:
+def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[Block]:
     """Give each free worker the next ensemble; which worker does what does not change the result."""
     waiting = list(enumerate(states))[::-1]
     blocks: dict[int, Block] = {}
-    busy: list[Connection] = []
-    try:
-        for connection in crew:
+    busy = crew[: len(waiting)]
+    for worker in busy:
+        worker.send(*waiting.pop())
+    while busy:
+        ready = wait([worker.connection for worker in busy])
+        for worker in [candidate for candidate in busy if candidate.connection in ready]:
+            reply = worker.receive()
+            if reply is None:
+                continue
+            index, result = reply
+            if isinstance(result, Exception):
+                raise result
+            blocks[index] = result
             if waiting:
-                connection.send(waiting.pop())
-                busy.append(connection)
-        while busy:
-            ready = wait(busy)
-            for connection in [candidate for candidate in busy if candidate in ready]:
-                index, result = connection.recv()
-                if isinstance(result, Exception):
-                    raise result
-                blocks[index] = result
-                if waiting:
-                    connection.send(waiting.pop())
-                else:
-                    busy.remove(connection)
-    except (EOFError, ConnectionError) as error:
-        raise RuntimeError(
-            "A worker process of the sampler died, perhaps for want of memory. The steps stored so far are safe. "
-            "(A script that samples on several cores does so under: if __name__ == '__main__'.)"
-        ) from error
+                worker.send(*waiting.pop())
+            else:
+                busy.remove(worker)
     return [blocks[index] for index in range(len(states))]

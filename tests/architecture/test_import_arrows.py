@@ -41,7 +41,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
     "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
                "skinbayes"},
-    "cli": {*WORDS, "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
+    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"errors", "vocabulary", "statistics", "files", "problem", "fit", "comparison"},
 }  # fmt: skip

@@ -200,17 +200,6 @@ def test_ctrl_c_in_a_terminal_reaches_workers_quietly(tmp_path):
     assert complaints == ""
 
 
-def test_a_dead_worker_is_told():
-    def kill(progress):
-        if progress.steps == 20:
-            for process in multiprocessing.active_children():
-                process.kill()
-                process.join()
-
-    with pytest.raises(RuntimeError, match="worker process of the sampler died"):
-        run_ensembles(UnitGaussian(2), SamplerOptions(seed=1, cores=2, **SHORT), progress=kill)
-
-
 def test_draws_are_thinned_and_in_order_of_time():
     chains = run_ensembles(UnitGaussian(2), SamplerOptions(seed=2))
     positions, log_density = chains.draws()

@@ -1,0 +1,149 @@
+"""What a run directory is told by, and the copies of model, data and curves that it holds."""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinbayes.atomic import PARTIAL, write_atomically
+from skinbayes.errors import InputError, RepairWarning
+from skinbayes.fit.manifest import RUN, STEPS, YARDSTICK_MODELS, Manifest, read_manifest, write_manifest
+from skinbayes.fit.run_lock import LOCK
+from skinbayes.sampling.store import stored_fingerprint
+from skinbayes.sealed import DamagedFile, put_aside
+
+if TYPE_CHECKING:
+    from skinbayes.problem import Problem
+
+SHOWN = 4
+"""Names listed of what else is in a folder."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """The run that a directory holds.
+
+    Attributes
+    ----------
+    manifest : what ``run.json`` says; None if it is missing or damaged and the steps alone tell whose run it is
+    fingerprint : of its problem
+    damage : what is wrong with ``run.json``, empty if nothing is
+    """
+
+    manifest: Manifest | None
+    fingerprint: str
+    damage: str = ""
+
+    @property
+    def name(self) -> str:
+        """Whose run it is, for messages."""
+        return f"a run of '{self.manifest.model}'" if self.manifest else "a run"
+
+
+def read_run(directory: Path) -> Held | None:
+    """What run a directory holds; None if it is empty or not there.
+
+    Raises
+    ------
+    InputError
+        It holds something else than a run.
+    """
+    try:
+        names = sorted(item.name for item in directory.iterdir())
+    except FileNotFoundError:
+        return None
+    except NotADirectoryError:
+        raise InputError(f"{directory}: a file found, a folder expected") from None
+    # traces of a process that was killed before it had claimed the folder
+    names = [name for name in names if name != LOCK and not _is_leftover(name)]
+    if not names:
+        return None
+    try:
+        manifest = read_manifest(directory)
+        damage = "missing"
+    except DamagedFile as error:
+        manifest, damage = None, f"damaged ({error})"
+    if manifest is not None:
+        return Held(manifest, manifest.fingerprint)
+    fingerprint = stored_fingerprint(directory / STEPS)
+    if fingerprint is not None:
+        return Held(None, fingerprint, damage)
+    more = len(names) - SHOWN
+    found = ", ".join(names[:SHOWN]) + (f" and {more} more" if more > 0 else "")
+    hint = f" ({RUN}: {damage})" if RUN in names else ""
+    raise InputError(
+        f"{directory}: holds {found}, and is no run of skinbayes{hint}; expected a new or empty folder, or a run. "
+        "Nothing was written"
+    )
+
+
+def _is_leftover(name: str) -> bool:
+    return name.startswith(".") and name.endswith(PARTIAL)
+
+
+def remove_leftovers(directory: Path) -> None:
+    """Remove files that a killed process was writing."""
+    for item in directory.iterdir():
+        if _is_leftover(item.name):
+            item.unlink(missing_ok=True)
+
+
+def own_yardsticks(problem: Problem) -> list[Path]:
+    """Yardsticks that are no shipped models."""
+    return [Path(name) for name in problem.spec.yardsticks if Path(name).suffix == ".toml"]
+
+
+def write_inputs(directory: Path, problem: Problem) -> Manifest:
+    """Put note, model file, data, curves and yardsticks of a problem into its run directory.
+
+    What stands there already and differs is put aside and named in a :class:`RepairWarning`.
+    """
+    copies: dict[str, Path] = {"model.toml": problem.spec.path}
+    note: dict[str, Any] = {"data": None, "surface": None, "rheology": None, "rows": None}
+    settings = {name: text for name, text in problem.settings.items() if name != "surface"}
+    if "surface" in problem.settings and problem.surface_file is None:
+        settings["surface"] = problem.settings["surface"]
+    if problem.dataset is not None:
+        source = Path(problem.dataset.path)
+        note["data"] = f"data/{source.name}"
+        copies[note["data"]] = source
+        note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
+        provenance = source.with_name("provenance.toml")
+        if source.name == "data.csv" and provenance.exists():
+            copies[f"data/{provenance.name}"] = provenance
+            note["data"] = "data"
+    if problem.spec.rheology is not None and Path(problem.spec.rheology).is_file():
+        copies["rheology.csv"] = Path(problem.spec.rheology)
+        note["rheology"] = "rheology.csv"
+    if problem.surface_file is not None:
+        copies["spectrum.csv"] = problem.surface_file
+        note["surface"] = "spectrum.csv"
+    copies |= {f"{YARDSTICK_MODELS}/{path.name}": path for path in own_yardsticks(problem)}
+    # read first: the user may point at the copies of an earlier run in this very directory
+    contents = {name: source.read_bytes() for name, source in copies.items()}
+    files = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
+    manifest = Manifest(problem.name, problem.fingerprint, **note, settings=settings, files=files)
+    # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again
+    write_manifest(directory, manifest)
+    for name, content in contents.items():
+        _write_copy(directory / name, content)
+    return manifest
+
+
+def _write_copy(copy: Path, content: bytes) -> None:
+    copy.parent.mkdir(exist_ok=True)
+    if copy.is_symlink() or (copy.exists() and not (copy.is_file() and copy.read_bytes() == content)):
+        aside = put_aside(copy)
+        warn_of_repair(
+            f"{copy}: damaged, or changed since the run was made; renamed to {aside.name}, and written again "
+            "from the model and data that were given"
+        )
+    write_atomically(copy, content)
+
+
+def warn_of_repair(message: str) -> None:
+    """Say what was damaged in a run and what was done about it."""
+    warnings.warn(message, RepairWarning, stacklevel=3)
