@@ -82,7 +82,9 @@ def read_result(file: Path) -> tuple[dict[str, xarray.Dataset], dict[str, Any], 
         _require_consistent(groups, provenance)
     except (DamagedFile, PermissionError):
         raise
-    except Exception as error:  # the libraries raise errors of many types about a file that was made to confuse them
+    except (
+        Exception
+    ) as error:  # the libraries raise errors of many types about a file that was made to confuse them
         raise DamagedFile(f"{error}") from error
     return groups, provenance, digest
 

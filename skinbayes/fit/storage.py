@@ -107,7 +107,9 @@ def _unfinished(path: Path) -> str:
 
 
 def _again(run: Path) -> str:
-    return f"'skinbayes fit MODEL -o {run} --resume' with the model, data and options of the run writes it again"
+    return (
+        f"'skinbayes fit MODEL -o {run} --resume' with the model, data and options of the run writes it again"
+    )
 
 
 def _undamaged(run: Path) -> Manifest:
@@ -269,10 +271,8 @@ def _rebuild(run: Path | None, manifest: Manifest | None, provenance: Mapping[st
 
     reason = "what they say is not what was fitted"
     try:
-        if run is None or manifest is None:
-            problem = load_problem(provenance["model_path"])
-        else:
-            problem = _from_copies(run, manifest)
+        shipped = str(provenance["model_path"])
+        problem = _from_copies(run, manifest) if run and manifest else load_problem(shipped)
         if _is_same(problem, provenance):
             return _renamed(problem, provenance)
     except (InputError, OSError, ValueError, KeyError) as error:

@@ -183,7 +183,7 @@ def test_a_damaged_note_of_a_run_is_not_replaced_by_that_of_another_model(run: P
     (copy / "run.json").write_text("{")
     before = {file: file.read_bytes() for file in copy.rglob("*") if file.is_file()}
     for resume in (True, False):
-        with pytest.raises(InputError, match="another model|holds a result already"):
+        with pytest.raises(InputError, match=r"another model|holds a result already"):
             sample(load_problem("forearm-glass"), directory=copy, resume=resume, **SHORT)
     (copy / "steps" / "header.json").write_text("{")
     with pytest.raises(InputError, match=r"run\.json: damaged"):
