@@ -109,10 +109,8 @@ def _rebuild(run: Path | None, manifest: Manifest | None, provenance: Mapping[st
 
     reason = "what they say is not what was fitted"
     try:
-        if run is not None and manifest is not None:
-            problem = _from_copies(run, manifest)
-        else:  # a bare file
-            problem = load_problem(provenance["model_path"])
+        shipped = str(provenance["model_path"])
+        problem = _from_copies(run, manifest) if run and manifest else load_problem(shipped)
         if _is_same(problem, provenance):
             return _renamed(problem, provenance)
     except (InputError, OSError, ValueError, KeyError) as error:
