@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from unicodedata import normalize
 
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
@@ -37,7 +38,8 @@ def apply_settings(
     surface: str | None = None
     done: set[str] = set()
     known = {*forward.input_names(), *(("surface",) if forward.uses_surface else ())}
-    for key, text in settings.items():
+    for written, text in settings.items():
+        key = normalize("NFC", written)  # as levels have it
         if key == "surface" and forward.uses_surface:
             surface = text
             continue

@@ -9,13 +9,14 @@ from skinbayes.units.conversion import (
 )
 from skinbayes.units.format import format_quantity
 from skinbayes.units.numbers import comma_advice
-from skinbayes.units.words import unit_table
+from skinbayes.units.words import is_unit, unit_table
 
 __all__ = [
     "comma_advice",
     "convert_array",
     "describe_unit",
     "format_quantity",
+    "is_unit",
     "parse_quantity",
     "product_unit",
     "split_header",

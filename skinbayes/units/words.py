@@ -47,7 +47,7 @@ UNIT_WORDS = (
     _unit("inch", "in", "", "inch inches"),
     _unit("foot", "ft", "", "foot feet"),
     _unit("liter", "L l", "d c m µ n", "litre liter"),
-    _unit("second", "s sec", "m µ n", "second"),
+    _unit("second", "s sec", "m µ n p", "second"),
     _unit("minute", "min", "", "minute"),
     _unit("hour", "h hr", "", "hour"),
     _unit("day", "d", "", "day"),
@@ -189,6 +189,14 @@ def canonical_unit(text: str) -> str:
     if operand or depth:
         raise UnknownUnit(plain)
     return found
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit, of whatever it may be."""
+    try:
+        return bool(canonical_unit(text))
+    except UnknownUnit:
+        return False
 
 
 def _pint_word(word: str, text: str) -> str:

@@ -16,7 +16,8 @@ MAY_KNOW: dict[str, set[str]] = {
     "errors": set(),
     "arrays": set(),
     "constants": set(),
-    "vocabulary": set(),
+    "synonyms": set(),
+    "vocabulary": {"synonyms"},
     "units": {"errors", "arrays", "vocabulary", "constants"},
     # physics
     "roughness": {"errors", "arrays", "constants"},
@@ -55,7 +56,7 @@ HOMES: dict[str, set[str]] = {
     "h5py": {"sampling", "fit"},
     "jinja2": {"report"},
     "matplotlib": {"plot", "report"},
-    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "vocabulary"},
+    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "synonyms", "vocabulary"},
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
     "platformdirs": {"forward"},
