@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
 from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
-from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, message
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
@@ -59,13 +60,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
             args=None if arguments is None else list(arguments), prog_name="skinbayes", standalone_mode=False
         )
     except InputError as error:
-        click.echo(f"skinbayes: {_printable(str(error))}", err=True)
-        status = EXIT_BAD_INPUT
-    except click.UsageError as error:
-        error.show()
+        click.echo(f"skinbayes: {message(str(error))}", err=True)
         status = EXIT_BAD_INPUT
     except click.ClickException as error:
-        error.show()
+        shown = io.StringIO()
+        error.show(shown)
+        for line in shown.getvalue().splitlines():
+            click.echo(message(line), err=True)
         status = EXIT_BAD_INPUT
     except (KeyboardInterrupt, click.Abort):
         click.echo("skinbayes: interrupted", err=True)
@@ -76,11 +77,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = 0
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"skinbayes: {_printable(place)}{error.strerror or error}", err=True)
+        click.echo(f"skinbayes: {message(place)}{error.strerror or error}", err=True)
         status = EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
-
-
-def _printable(text: str) -> str:
-    """One line without control characters, which a file or an argument could send to the terminal."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

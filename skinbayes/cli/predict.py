@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_table
+from skinbayes.cli.output import json_option, print_json, print_table, say
 from skinbayes.errors import InputError
 
 
@@ -45,7 +45,7 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
         why = " ".join(problem.explain(theta)) or "these inputs lie outside the forward model's range"
         raise InputError(f"{model}: {bad[0]} has no finite value at row {row}: {why}")
     for note in problem.explain(theta):
-        click.echo(f"note: {note}", err=True)
+        say(f"note: {note}", err=True)
     parameters: dict[str, Any] = dict(zip(problem.names, theta.tolist(), strict=True))
     for p in problem.fixed:
         given_as_none = settings.get(p.name, "").lower() == "none"
