@@ -15,6 +15,7 @@ from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
 from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
+from skinbayes.cli.new import new
 from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, message
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
@@ -47,7 +48,20 @@ def cli() -> None:
     """
 
 
-for _command in (models, datasets, show, template, digitised, check, prior, predict, fit, compare, report):
+for _command in (
+    models,
+    datasets,
+    show,
+    new,
+    template,
+    digitised,
+    check,
+    prior,
+    predict,
+    fit,
+    compare,
+    report,
+):
     cli.add_command(_command)
 
 
