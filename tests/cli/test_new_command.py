@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from command_line import ROOT, run
 
+import skinbayes as sb
 from skinbayes.files import load_dataset, shipped_names
 from skinbayes.files.modelfile import load_model
 from skinbayes.problem import load_problem
@@ -161,7 +162,7 @@ def test_data_of_ones_own_do_not_carry_the_title_of_a_paper(
     assert "own" in problem.spec.description and shipped.description[:30] not in problem.spec.description
     assert load_problem("finger-water").spec.title == shipped.title
     done = run(
-        capsys, "fit", "finger-water", "--data", "ours.csv", "--ess", "20", "--max-steps", "200", "--report"
+        capsys, "fit", "finger-water", "--data", "ours.csv", "--ess", "20", "--max-steps", "100", "--report"
     )
     assert (
         done.status in (0, 3)
@@ -169,7 +170,11 @@ def test_data_of_ones_own_do_not_carry_the_title_of_a_paper(
         and shipped.title not in done.output.splitlines()[0]
     )
     page = Path("runs/finger-water-seed1/report.html").read_text(encoding="utf-8")
-    assert "ours.csv" in page and "Fehlberg et al. (2025): one row" not in page
+    (heading,) = re.findall(r"<h1>(.*?)</h1>", page, re.DOTALL)
+    assert "ours.csv" in heading and shipped.title not in heading
+    fit = sb.load_fit("runs/finger-water-seed1")
+    assert fit.provenance["title"] == problem.spec.title
+    assert fit.provenance["description"] == problem.spec.description
 
 
 def test_the_three_steps_of_the_readme(
