@@ -113,7 +113,11 @@ def _show_model(name: str, as_json: bool) -> None:
     for p in problem.free:
         rows.append((p.label, p.prior_text, p.source))
     for p in problem.fixed:
-        value = "inf" if p.value == float("inf") else format_quantity(float(p.value or 0.0), p.unit)
+        value = (
+            "inf"
+            if p.value == float("inf")
+            else format_quantity(float(p.value or 0.0), p.unit, written=p.prior_text)
+        )
         rows.append((p.label, f"= {value}", p.source))
     print_table(("parameter", "prior or value", "source"), rows)
 

@@ -71,16 +71,19 @@ def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[s
     from skinbayes.units import format_quantity
     from skinbayes.vocabulary import QUANTITIES
 
-    def text(name: str, value: Any) -> str:
+    def text(name: str, value: Any, written: str | None = None) -> str:
         quantity = QUANTITIES.get(name)
         return (
             str(value)
             if isinstance(value, str)
-            else format_quantity(float(value), quantity.unit if quantity else "1")
+            else format_quantity(float(value), quantity.unit if quantity else "1", written=written)
         )
 
-    values = [(p.label, text(p.name, v), "prior median") for p, v in zip(problem.free, theta, strict=True)]
-    values += [(p.label, text(p.name, p.value), p.source) for p in problem.fixed]
+    values = [
+        (p.label, text(p.name, v, p.prior_text), "prior median")
+        for p, v in zip(problem.free, theta, strict=True)
+    ]
+    values += [(p.label, text(p.name, p.value, p.prior_text), p.source) for p in problem.fixed]
     print_table(("input", "value", "from"), values)
     headers = [*columns, *prediction]
     cells = [

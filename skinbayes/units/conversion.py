@@ -62,7 +62,7 @@ def _registry() -> Any:
     return UnitRegistry(cache_folder=None)
 
 
-class _OtherDimension(ValueError):
+class OtherDimension(ValueError):
     """A unit of another dimension; ``meaning`` says of what, if that has a name."""
 
     def __init__(self, text: str, meaning: str) -> None:
@@ -71,11 +71,11 @@ class _OtherDimension(ValueError):
 
 
 @lru_cache(maxsize=512)
-def _conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
+def unit_conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
     """``(multiplier, divisor, offset)`` with ``to = from * multiplier / divisor + offset``.
 
     A factor such as 1e-6 is kept as a division by 1e6, which rounds once: "20 um" is then the number that
-    2e-5 denotes. UnknownUnit for an unknown unit, _OtherDimension for one of another dimension.
+    2e-5 denotes. UnknownUnit for an unknown unit, OtherDimension for one of another dimension.
     """
     registry = _registry()
     target = registry.parse_units("" if to_unit == "1" else to_unit)
@@ -87,7 +87,7 @@ def _conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
     # Pint takes an angle for a number; a friction coefficient in degrees is a mistake nevertheless.
     angle = source.dimensionless and registry.get_base_units(source)[1] != registry.get_base_units(target)[1]
     if angle or source.dimensionality != target.dimensionality:
-        raise _OtherDimension(from_unit, _meaning_of(source))
+        raise OtherDimension(from_unit, _meaning_of(source))
     try:
         offset = float(registry.Quantity(0.0, source).to(target).magnitude)
         if offset != 0.0:  # the scale of a temperature: far from its zero the difference keeps its digits
@@ -154,16 +154,16 @@ def convert_array(
 def _explained_conversion(
     from_unit: str, to_unit: str, where: str, found: str | None = None, difference: bool = False
 ) -> tuple[float, float, float]:
-    """`_conversion`, with errors that say where; ``found`` is the text around the unit, if there is any."""
+    """`unit_conversion`, with errors that say where; ``found`` is the text around the unit, if there is any."""
     unit = f"unit {_shortened(from_unit)!r}"
     if "delta_" in from_unit and not difference:
         raise InputError(f"{where}: {found or unit} is a difference; expected {describe_unit(to_unit)}")
     try:
-        return _conversion(from_unit, to_unit)
+        return unit_conversion(from_unit, to_unit)
     except UnknownUnit as error:
         problem = f"{unit} is unknown" if found is None else f"{found} has an unknown unit"
         problem += _advice(error, to_unit)
-    except _OtherDimension as error:
+    except OtherDimension as error:
         problem = f"{unit if found is None else found} has the wrong dimension"
         problem += f" ({error.meaning})" if error.meaning else ""
     raise InputError(f"{where}: {problem}; expected {describe_unit(to_unit)}")
@@ -181,8 +181,8 @@ def _advice(unknown: UnknownUnit, to_unit: str) -> str:
 
 def _fits(text: str, to_unit: str) -> bool:
     try:
-        _conversion(text, to_unit)
-    except (UnknownUnit, _OtherDimension):
+        unit_conversion(text, to_unit)
+    except (UnknownUnit, OtherDimension):
         return False
     return True
 

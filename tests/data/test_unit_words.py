@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from skinbayes.errors import InputError
-from skinbayes.units import convert_array, parse_quantity, unit_table
+from skinbayes.units import convert_array, format_quantity, parse_quantity, unit_table
 
 PAGE = Path(__file__).parents[2] / "docs" / "data.md"
 
@@ -150,3 +150,24 @@ def test_the_page_lists_every_unit() -> None:
     assert [tuple(cell.strip() for cell in row) for row in shown] == unit_table()
     for symbols, _, names in unit_table():
         assert symbols or names
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "written", "shown"),
+    [
+        (1.3962634015954636, "rad", "80 deg", "80 deg"),
+        (1.3962634015954636, "rad", "fixed at 80°", "80 °"),
+        (1.2, "rad", "1.2 rad", "1.2 rad"),
+        (1.3962634015954636, "rad", None, "80 deg"),
+        (293.15, "K", "20 degC", "20 degC"),
+        (293.15, "K", "lognormal(20 °C, 0.1)", "20 °C"),
+        (293.15, "K", "68 degF", "68 degF"),
+        (293.15, "K", "293.15 K", "293.15 K"),
+        (293.15, "K", None, "293.15 K"),
+        (2e-5, "m", "20 um", "20 µm"),
+    ],
+)
+def test_angles_and_temperatures_in_the_unit_they_were_typed_in(
+    value: float, unit: str, written: str | None, shown: str
+) -> None:
+    assert format_quantity(value, unit, written=written) == shown
