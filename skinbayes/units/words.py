@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 PREFIXES = {
-    "G": "giga", "M": "mega", "k": "kilo", "h": "hecto", "da": "deca", "d": "deci", "c": "centi", "m": "milli",
+    "T": "tera", "G": "giga", "M": "mega", "k": "kilo", "h": "hecto", "da": "deca", "d": "deci", "c": "centi", "m": "milli",
     "µ": "micro", "u": "micro", "n": "nano", "p": "pico",
 }  # fmt: skip
 """SI prefixes in use; ``u`` stands for ``µ``."""
@@ -57,7 +57,7 @@ UNIT_WORDS = (
     _unit("force_kilogram", "kgf kp"),
     _unit("dyne", "dyn", "", "dyne"),
     _unit("pound_force", "lbf"),
-    _unit("pascal", "Pa", "G M k h d m µ n p", "pascal"),
+    _unit("pascal", "Pa", "T G M k h d m µ n p", "pascal"),
     _unit("bar", "bar", "k m", "bar"),
     _unit("atmosphere", "atm"),
     _unit("mmHg", "mmHg"),
