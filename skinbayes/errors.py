@@ -8,12 +8,16 @@ from pathlib import Path
 NO_SPACE = frozenset(getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG") if hasattr(errno, name))
 """Numbers of the system's errors which say that there is no room to write: disk full, quota, limit of a file."""
 
+NEXT_PROBLEM = "\n  - "
+"""Stands between the problems of one file in a message; the only line break in messages."""
+
 
 class InputError(ValueError):
     """Something the user gave cannot be used.
 
-    The message is one or two plain sentences: where (file, line, row, column or parameter), what was found,
-    and what was expected, in its unit. The command line prints it as it is and exits with status 2.
+    The message is one or two plain sentences, or a list of them for a file with several faults: where (file, line, row,
+    column or parameter), what was found, and what was expected, in its unit. The command line prints it as it is and
+    exits with status 2.
     """
 
 

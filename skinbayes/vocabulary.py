@@ -6,8 +6,12 @@ the unit of a name asks here; nothing else in skinbayes states one.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import inf, pi
+from unicodedata import normalize
+
+from skinbayes.synonyms import likely_meant
 
 from skinbayes.errors import InputError
 
@@ -298,6 +302,8 @@ LABELS: dict[str, str] = {
 }
 """Text columns of data sets (grouping columns) and their meaning."""
 
+_SYMBOLS = {normalize("NFKC", quantity.symbol): quantity.name for quantity in reversed(_ALL)}
+
 STANDARD_DEVIATION_SUFFIX = "_standard_deviation"
 """A column ``<quantity>_standard_deviation`` holds the spread of that quantity, in its unit."""
 
@@ -313,9 +319,27 @@ def lookup(name: str) -> Quantity | None:
     return None
 
 
-def suggestions(name: str, known: list[str]) -> str:
-    """A sentence naming close matches of ``name``, or an empty string: ``" Did you mean 'rms_height'?"``."""
-    from difflib import get_close_matches
+def suggestions(name: str, known: Collection[str]) -> str:
+    """A sentence naming what is likely meant by ``name``, or an empty string.
 
-    close = get_close_matches(name, known, n=2, cutoff=0.6)
-    return f" Did you mean {' or '.join(repr(match) for match in close)}?" if close else ""
+    Examples
+    --------
+    >>> suggestions("rms_heigth", ["rms_height", "rms_slope"]), suggestions("replicate", list(QUANTITIES))
+    (" Did you mean 'rms_height'?", '')
+    """
+    found = meant(name, known)
+    said = [f"'{match}'" + (f" ({remark})" if remark else "") for match, remark in found]
+    return f" Did you mean {' or '.join(said)}?" if said else ""
+
+
+def meant(name: str, known: Collection[str]) -> list[tuple[str, str]]:
+    """Which of the known names are likely meant by ``name``, each with a remark on how they differ (or ``""``).
+
+    Synonyms, symbols and words for spreads (``mu``, ``COF``, ``σ_f``, ``load_sd``) count as well as slips of the pen.
+
+    Examples
+    --------
+    >>> meant("μ", list(QUANTITIES)), meant("load_sd", list(QUANTITIES))
+    ([('friction_coefficient', '')], [('normal_force_standard_deviation', '')])
+    """
+    return likely_meant(name, known, _SYMBOLS, STANDARD_DEVIATION_SUFFIX)

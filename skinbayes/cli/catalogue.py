@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -97,23 +97,27 @@ def _show_model(name: str, as_json: bool) -> None:
             "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
         })  # fmt: skip
         return
-    click.echo(f"{spec.title}\n\n{spec.description}\n")
-    click.echo(f"forward model: {spec.forward} – {problem.forward.summary}")
-    click.echo(
+    say(f"{spec.title}\n\n{spec.description}\n")
+    say(f"forward model: {spec.forward} – {problem.forward.summary}")
+    say(
         f"data set:      {spec.dataset or ('yours, with --data' if spec.observables else 'none (predict only)')}"
         + (f", rows {spec.rows}" if spec.rows else "")
     )
     for observable, noise in spec.noise.items():
-        click.echo(f"observable:    {observable}, noise {noise}")
+        say(f"observable:    {observable}, noise {noise}")
     if spec.rheology:
-        click.echo(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
+        say(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
     for covariate in spec.covariates:
-        click.echo(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
+        say(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
     rows = []
     for p in problem.free:
         rows.append((p.label, p.prior_text, p.source))
     for p in problem.fixed:
-        value = "inf" if p.value == float("inf") else format_quantity(float(p.value or 0.0), p.unit)
+        value = (
+            "inf"
+            if p.value == float("inf")
+            else format_quantity(float(p.value or 0.0), p.unit, written=p.prior_text)
+        )
         rows.append((p.label, f"= {value}", p.source))
     print_table(("parameter", "prior or value", "source"), rows)
 
@@ -132,7 +136,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
         )
         return
     if provenance is not None:
-        click.echo(f"{provenance.title}\n{', '.join(provenance.authors)}\n")
+        say(f"{provenance.title}\n{', '.join(provenance.authors)}\n")
         texts = (
             "doi",
             "licence",
@@ -146,11 +150,11 @@ def _show_dataset(name: str, as_json: bool) -> None:
         for label in texts:
             value = getattr(provenance, label)
             if value:
-                click.echo(
+                say(
                     f"{label.replace('_', ' ') + ':':16}{', '.join(value) if isinstance(value, list) else value}"
                 )
         if provenance.caveats:
-            click.echo("")
+            say()
             print_sentences(provenance.caveats, "Caveats")
     print_table(headers, rows)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences
+from skinbayes.cli.output import json_option, print_json, print_sentences, say
 
 
 @click.command()
@@ -21,4 +21,4 @@ def check(model: str, data: str | None, as_json: bool) -> None:
         return
     for title, sentences in result.sections():
         print_sentences(sentences, title)
-        click.echo("")
+        say()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -120,11 +120,11 @@ def digitised(
             "units": dict(table.units), "columns": dict(table.columns),
         })  # fmt: skip
         return
-    click.echo(f"data:       {target} ({sum(rows.values())} rows)")
-    click.echo(f"provenance: {described_in} ({'kept as it was' if kept else 'to be completed'})\n")
+    say(f"data:       {target} ({sum(rows.values())} rows)")
+    say(f"provenance: {described_in} ({'kept as it was' if kept else 'to be completed'})\n")
     print_sentences(table.errors, "Reading errors, one standard deviation")
     if kept:
-        click.echo(f"\nThe sha256 of the data is now {sha256}; the provenance has to say so.")
+        say(f"\nThe sha256 of the data is now {sha256}; the provenance has to say so.")
 
 
 def _list(export: DigitisedFile, as_json: bool) -> None:
@@ -145,7 +145,7 @@ def _list(export: DigitisedFile, as_json: bool) -> None:
             }
         )
         return
-    click.echo(f"{export.path}: {export.kind}")
+    say(f"{export.path}: {export.kind}")
     rows = [
         (
             item["name"],

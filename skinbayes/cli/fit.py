@@ -16,6 +16,7 @@ from skinbayes.cli.output import (
     print_json,
     print_sentences,
     print_table,
+    say,
 )
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def fit(
                 preparing=count, max_steps=max_steps,
             )  # fmt: skip
     except KeyboardInterrupt:
-        click.echo(
+        say(
             f"interrupted; the steps so far are in {directory}. Repeat the command with --resume to continue.",
             err=True,
         )
@@ -150,7 +151,5 @@ def _print(result: Fit, directory: Path, page: Path | None) -> None:
     )
     print_sentences([result.provenance["sampling"]["verdict"]])
     if crowded:
-        click.echo(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
-    click.echo(
-        f"run: {directory}" + (f"\nreport: {page}" if page else f"\nreport: skinbayes report {directory}")
-    )
+        say(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
+    say(f"run: {directory}" + (f"\nreport: {page}" if page else f"\nreport: skinbayes report {directory}"))

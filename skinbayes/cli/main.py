@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import warnings
@@ -17,7 +18,8 @@ from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
 from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
-from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE
+from skinbayes.cli.new import new
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE, message
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
@@ -50,7 +52,20 @@ def cli() -> None:
     """
 
 
-for _command in (models, datasets, show, template, digitised, check, prior, predict, fit, compare, report):
+for _command in (
+    models,
+    datasets,
+    show,
+    new,
+    template,
+    digitised,
+    check,
+    prior,
+    predict,
+    fit,
+    compare,
+    report,
+):
     cli.add_command(_command)
 
 
@@ -66,19 +81,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 standalone_mode=False,
             )
     except InputError as error:
-        click.echo(f"skinbayes: {_printable(str(error))}", err=True)
+        click.echo(f"skinbayes: {message(str(error))}", err=True)
         status = EXIT_BAD_INPUT
     except MachineError as error:
-        click.echo(f"skinbayes: {_printable(str(error))}", err=True)
+        click.echo(f"skinbayes: {message(str(error))}", err=True)
         status = EXIT_MACHINE
     except MemoryError:
         click.echo("skinbayes: there is not enough memory", err=True)
         status = EXIT_MACHINE
-    except click.UsageError as error:
-        error.show()
-        status = EXIT_BAD_INPUT
     except click.ClickException as error:
-        error.show()
+        shown = io.StringIO()
+        error.show(shown)
+        for line in shown.getvalue().splitlines():
+            click.echo(message(line), err=True)
         status = EXIT_BAD_INPUT
     except (KeyboardInterrupt, click.Abort):
         click.echo("skinbayes: interrupted", err=True)
@@ -89,7 +104,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = 0
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"skinbayes: {_printable(place)}{error.strerror or error}", err=True)
+        click.echo(f"skinbayes: {message(place)}{error.strerror or error}", err=True)
         status = EXIT_MACHINE if error.errno in NO_SPACE else EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
 
@@ -101,16 +116,11 @@ def _repairs_told() -> Iterator[None]:
         warnings.simplefilter("always", RepairWarning)
         shown = warnings.showwarning
 
-        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        def show(text: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
             if issubclass(category, RepairWarning):
-                click.echo(f"skinbayes: {_printable(str(message))}", err=True)
+                click.echo(f"skinbayes: {message(str(text))}", err=True)
             else:
-                shown(message, category, *place, **more)
+                shown(text, category, *place, **more)
 
         warnings.showwarning = show
         yield
-
-
-def _printable(text: str) -> str:
-    """One line without control characters, which a file or an argument could send to the terminal."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

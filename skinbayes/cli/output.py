@@ -1,13 +1,20 @@
-"""Printing: JSON documents, tables, progress. The only place besides the commands that writes to the terminal."""
+"""Printing: sentences, JSON documents, tables. The only place that writes text to the terminal.
+
+What files, arguments and model files say may hold anything; characters that a terminal would obey are shown, not sent.
+"""
 
 from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
+from unicodedata import category
 
 import click
+
+from skinbayes.errors import NEXT_PROBLEM
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,9 +38,50 @@ def json_option(command: _Command) -> _Command:
     )(command)
 
 
+LONGEST_CELL = 500
+"""Characters of a cell of a table that are printed."""
+
+LONGEST_WORD = 400
+"""Characters without a blank that a message repeats."""
+
+LONGEST_MESSAGE = 6000
+
+
+def printable(text: str) -> str:
+    """Text without characters that control a terminal or turn the direction of writing; line breaks stay.
+
+    Examples
+    --------
+    >>> printable("a\\x1b[31m\\u202eb")
+    'a\\\\x1b[31m\\\\u202eb'
+    """
+    return "".join(
+        c if c.isprintable() or c == "\n" else " " if category(c) == "Zs" else repr(c)[1:-1] for c in text
+    )
+
+
+def say(text: str = "", err: bool = False) -> None:
+    """Print text that may come from a user."""
+    click.echo(printable(text), err=err)
+
+
+def message(text: str) -> str:
+    """A message for standard error: printable, long words shortened; line breaks between problems of a file only."""
+    lines = [
+        printable(re.sub(rf"\S{{{LONGEST_WORD + 1},}}", _shortened, line)).replace("\n", "\\n")
+        for line in text.split(NEXT_PROBLEM)
+    ]
+    return NEXT_PROBLEM.join(lines)[:LONGEST_MESSAGE]
+
+
+def _shortened(word: re.Match[str]) -> str:
+    return f"{word[0][:80]}… ({len(word[0])} characters)"
+
+
 def print_json(document: Any) -> None:
     """Print one valid JSON document; infinities become the strings "inf" and "-inf", NaN becomes null."""
-    click.echo(json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False))
+    text = json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False)
+    click.echo("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
 
 
 def plain(value: Any) -> Any:
@@ -69,12 +117,19 @@ def print_table(
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(title) if title else None, box=SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    table = Table(
+        title=Text(printable(title)) if title else None, box=SIMPLE_HEAD, title_justify="left", pad_edge=False
+    )
     for i, header in enumerate(headers):
-        table.add_column(Text(header), justify="right" if i in right else "left", overflow="fold")
+        table.add_column(Text(_cell(header)), justify="right" if i in right else "left", overflow="fold")
     for row in rows:
-        table.add_row(*(Text(cell) for cell in row))
+        table.add_row(*(Text(_cell(cell)) for cell in row))
     console().print(table)
+
+
+def _cell(text: str) -> str:
+    shown = text if len(text) <= LONGEST_CELL else f"{text[: LONGEST_CELL - 40]}… ({len(text)} characters)"
+    return printable(shown).replace("\n", "\\n")
 
 
 def print_sentences(sentences: Iterable[str], title: str = "") -> None:
@@ -84,6 +139,6 @@ def print_sentences(sentences: Iterable[str], title: str = "") -> None:
 
     terminal = console()
     if title:
-        terminal.print(Text(title, style="bold"))
+        terminal.print(Text(printable(title), style="bold"))
     for sentence in sentences:
-        terminal.print(Padding(Text(f"- {sentence}"), (0, 0, 0, 1)))
+        terminal.print(Padding(Text(printable(f"- {sentence}")), (0, 0, 0, 1)))

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_table
+from skinbayes.cli.output import json_option, print_json, print_table, say
 from skinbayes.errors import InputError
 
 
@@ -45,7 +45,7 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
         why = " ".join(problem.explain(theta)) or "these inputs lie outside the forward model's range"
         raise InputError(f"{model}: {bad[0]} has no finite value at row {row}: {why}")
     for note in problem.explain(theta):
-        click.echo(f"note: {note}", err=True)
+        say(f"note: {note}", err=True)
     parameters: dict[str, Any] = dict(zip(problem.names, theta.tolist(), strict=True))
     for p in problem.fixed:
         given_as_none = settings.get(p.name, "").lower() == "none"
@@ -71,16 +71,19 @@ def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[s
     from skinbayes.units import format_quantity
     from skinbayes.vocabulary import QUANTITIES
 
-    def text(name: str, value: Any) -> str:
+    def text(name: str, value: Any, written: str | None = None) -> str:
         quantity = QUANTITIES.get(name)
         return (
             str(value)
             if isinstance(value, str)
-            else format_quantity(float(value), quantity.unit if quantity else "1")
+            else format_quantity(float(value), quantity.unit if quantity else "1", written=written)
         )
 
-    values = [(p.label, text(p.name, v), "prior median") for p, v in zip(problem.free, theta, strict=True)]
-    values += [(p.label, text(p.name, p.value), p.source) for p in problem.fixed]
+    values = [
+        (p.label, text(p.name, v, p.prior_text), "prior median")
+        for p, v in zip(problem.free, theta, strict=True)
+    ]
+    values += [(p.label, text(p.name, p.value, p.prior_text), p.source) for p in problem.fixed]
     print_table(("input", "value", "from"), values)
     headers = [*columns, *prediction]
     cells = [

@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
-import click
 import numpy as np
 
-from skinbayes.cli.output import console
+from skinbayes.cli.output import console, say
 
 if TYPE_CHECKING:
     from skinbayes.sampling.ensembles import Progress
@@ -116,7 +115,7 @@ def _counted_lines(what: str) -> Callable[[int, int], None]:
         nonlocal last
         if time.monotonic() - last >= QUIET_SECONDS:
             last = time.monotonic()
-            click.echo(f"{what}: {done} of {total}", err=True)
+            say(f"{what}: {done} of {total}", err=True)
 
     return update
 
@@ -130,7 +129,7 @@ def _lines(ess: float, what: str) -> Callable[[Progress], None]:
             last = time.monotonic()
             reached = _reached(progress)
             size = "" if reached is None else f", effective sample size {reached:.0f} of {ess:.0f}"
-            click.echo(f"{what}: {progress.steps} steps{size}", err=True)
+            say(f"{what}: {progress.steps} steps{size}", err=True)
 
     return update
 

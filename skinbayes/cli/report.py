@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from skinbayes.cli.output import json_option, print_json
+from skinbayes.cli.output import json_option, print_json, say
 
 
 @click.command()
@@ -40,4 +40,4 @@ def report(run: str, output: str | None, no_yardsticks: bool, as_json: bool) -> 
             }
         )
     else:
-        click.echo(f"report: {page}")
+        say(f"report: {page}")

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json
+from skinbayes.cli.output import json_option, print_json, say
 
 
 @click.command()
@@ -35,8 +35,8 @@ def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> 
             "model": found.model, "file": output, "header": found.header, "columns": columns, "notes": list(found.notes),
         })  # fmt: skip
         return
-    click.echo(found.header if output is None else f"template: {output}")
+    say(found.header if output is None else f"template: {output}")
     for column in found.columns:
-        click.echo(f"- {column.header}: {column.meaning} ({column.why})", err=True)
+        say(f"- {column.header}: {column.meaning} ({column.why})", err=True)
     for note in found.notes:
-        click.echo(note, err=True)
+        say(note, err=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal
+from unicodedata import normalize
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.columns import LabelArray, read_columns
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
-from skinbayes.files.table import quoted, read_table
+from skinbayes.files.table import Problems, quoted, read_table
 
 DATA_FILE = "data.csv"
 PROVENANCE_FILE = "provenance.toml"
@@ -114,7 +115,7 @@ class Dataset:
         keep = np.ones(self.n_rows, dtype=bool)
         for column, wanted in rows.items():
             present = self.labels(column)
-            chosen = [wanted] if isinstance(wanted, str) else list(wanted)
+            chosen = _labels(wanted)
             for label in chosen:
                 if label not in present:
                     raise InputError(
@@ -125,9 +126,7 @@ class Dataset:
         if not keep.any():
             raise InputError(f"data set '{self.key}': no row has {_wish(rows)}; expected at least one row")
         columns = {name: values[keep] for name, values in self.columns.items()}
-        chosen_labels = {
-            column: (labels,) if isinstance(labels, str) else tuple(labels) for column, labels in rows.items()
-        }
+        chosen_labels = {column: tuple(_labels(labels)) for column, labels in rows.items()}
         selection = {**self.selection, **chosen_labels}
         return Dataset(
             self.key, self.path, columns, self.units, self.provenance, self.sha256, self.kind, selection
@@ -143,6 +142,14 @@ class Dataset:
             )
         values: Any = self.columns[column]
         return values
+
+
+def _labels(wanted: str | Sequence[str]) -> list[str]:
+    """Labels in the Unicode normal form that columns have."""
+    return [
+        normalize("NFC", label) if isinstance(label, str) else label
+        for label in ([wanted] if isinstance(wanted, str) else wanted)
+    ]
 
 
 def _listed(names: Sequence[str], at_most: int = 20) -> str:
@@ -194,10 +201,11 @@ def load_dataset(name_or_path: str | Path, *, relative_to: Path | None = None) -
                 "results, not measurements of one experiment, so it cannot be fitted. "
                 f"'skinbayes show {key}' prints it"
             )
-    table = read_table(path)
+    problems = Problems(path)
+    table = read_table(path, problems=problems)
     if provenance is not None and described_in is not None:
         check_sha256(provenance, path, table.sha256, described_in)
-    columns, units = read_columns(table)
+    columns, units = read_columns(table, problems)
     return Dataset(key, path, columns, units, provenance, table.sha256)
 
 

@@ -86,10 +86,15 @@ def _columns(table: Table) -> dict[str, tuple[int, str]]:
     """Position and unit of each column; InputError for anything but one wavevector and one spectrum."""
     where = f"{table.path}, line {table.header_line}"
     named: dict[str, tuple[int, str]] = {}
+    known = ["wavevector", *_POWER]
+    names = [split_header(header)[0] for header in table.header]
+    if not any(name in known or suggestions(name, known) for name in names):
+        # nothing of a file that is no spectrum is quoted: a model may name any file there is
+        raise InputError(f"{where}: no column of a spectrum; {_EXPECTED}")
     for position, header in enumerate(table.header):
         name, unit = split_header(header)
         if name != "wavevector" and name not in _POWER:
-            guess = suggestions(name[:80], ["wavevector", *_POWER])
+            guess = suggestions(name, known)
             raise InputError(
                 f"{where}: unknown column {quoted(header.strip())}; {_EXPECTED}.{guess}".rstrip(".")
             )

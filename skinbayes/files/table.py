@@ -7,41 +7,59 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from skinbayes.errors import InputError
+from skinbayes.errors import NEXT_PROBLEM, InputError
 
 MAX_ROWS = 100_000
 """Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: with 64
 vectors every intermediate array of this many rows already takes 50 MB."""
 
 _LONGEST_LINE = 100_000  # bytes; a table of quantities has lines of some hundred
+_DIGITS = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+LARGEST_FILE = 200_000_000
+"""Bytes; the longest table that is read has no more."""
+
+MOST_SHOWN = 10
+"""Problems of a file that a message lists."""
 
 
 @dataclass
 class Problems:
-    """Collects what is wrong with a file, to report the first problem and the number of the others."""
+    """Collects what is wrong with a file, to report all of it at once, in the order of the file."""
 
     path: Path
     count: int = 0
-    _first: tuple[int, int, str] = field(default=(0, 0, ""))
+    _noted: dict[tuple[int, str], list[tuple[int, int, str]]] = field(default_factory=dict)
 
-    def add(self, line: int, position: int, text: str) -> None:
-        """Note a problem at a line (the first line of the file is 1) and a column position."""
-        if self.count == 0 or (line, position) < self._first[:2]:
-            self._first = (line, position, text)
+    def add(self, line: int, position: int, text: str, kind: str = "") -> None:
+        """Note a problem at a line (the first line of the file is 1) and a column position.
+
+        Where there are too many to be listed, the first of each ``kind`` in each column comes before others of its kind.
+        """
         self.count += 1
+        alike = self._noted.setdefault((position, kind), [])
+        if len(alike) < MOST_SHOWN:
+            alike.append((line, position, text))
 
     def raise_if_any(self) -> None:
-        """Raise InputError for the first problem, if there is one."""
+        """Raise InputError that lists the problems, if there are any."""
         if self.count == 0:
             return
-        others = self.count - 1
-        more = f" (and {others} more problem{'s' if others > 1 else ''} in this file)" if others else ""
-        raise InputError(f"{self.path}, line {self._first[0]}{self._first[2]}{more}")
+        first = sorted(alike[0] for alike in self._noted.values())
+        others = sorted(problem for alike in self._noted.values() for problem in alike[1:])
+        shown = [f"line {line}{text}" for line, _, text in sorted([*first, *others][:MOST_SHOWN])]
+        if self.count == 1:
+            raise InputError(f"{self.path}, {shown[0]}")
+        if left := self.count - len(shown):
+            shown.append(f"and {left} more")
+        raise InputError(NEXT_PROBLEM.join((f"{self.path}: {self.count} problems", *shown)))
 
 
 @dataclass(frozen=True)
@@ -68,18 +86,22 @@ class Table:
         return [row[position].strip() for row in self.rows]
 
 
-def quoted(text: str) -> str:
+def quoted(text: str, longest: int = 40) -> str:
     """Text of a file inside a message: quoted, shortened, without control characters."""
-    return repr(text if len(text) <= 40 else text[:37] + "...")
+    return repr(text if len(text) <= longest else text[: longest - 3] + "...")
 
 
-def read_table(path: Path, *, max_rows: int = MAX_ROWS) -> Table:
-    """Read comma-separated text: UTF-8, one header line, lines that start with ``#`` are comments.
+def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | None = None) -> Table:
+    """Read comma-separated text: UTF-8, one header line, comments.
+
+    A line that begins with ``#`` is a comment, unless it can be a row: the first column holds labels (its header has no
+    unit), the line has all its cells, and one of those under a unit is a number. A label may begin with ``#``.
 
     Parameters
     ----------
     path : the file
     max_rows : largest number of rows of data
+    problems : collects rows of another length, which are left out; without it they are refused here
 
     Raises
     ------
@@ -87,20 +109,24 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS) -> Table:
         for an unreadable, empty, binary, wrongly encoded, too long or ragged file, or another separator
     """
     digest = hashlib.sha256()
-    problems = Problems(path)
+    noted = Problems(path) if problems is None else problems
     header: tuple[str, ...] | None = None
     header_line = 0
+    comment = ""  # the last one
     lines: list[int] = []
     rows: list[tuple[str, ...]] = []
     for number, raw in _lines(path):
         digest.update(raw)
         text = _decode(raw, path, number)
-        if not text.strip() or text.lstrip().startswith("#"):
+        if not text.strip():
+            continue
+        if text.lstrip().startswith("#") and not (header and _may_be_row(text, header)):
+            comment = text
             continue
         cells = _split(text, path, number)
         if header is None:
             header, header_line = cells, number
-            _check_separator(text, path, number)
+            _check_header(text, comment, path, number)
             continue
         if len(rows) == max_rows:
             raise InputError(
@@ -108,20 +134,40 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS) -> Table:
                 "for example after averaging neighbouring rows"
             )
         if len(cells) != len(header):
-            hint = "; is the decimal separator a comma?" if len(cells) > len(header) else ""
-            problems.add(
-                number, 0, f": found {len(cells)} cells; expected {len(header)} as in the header{hint}"
-            )
+            noted.add(number, 0, f": {_length(cells, len(header))}", kind=f"{len(cells)} cells")
+            continue
         lines.append(number)
         rows.append(cells)
     if header is None:
         raise InputError(f"{path}: the file is empty; expected a header line such as 'normal_force [N]'")
-    problems.raise_if_any()
-    if not rows:
+    if problems is None:
+        noted.raise_if_any()
+    if not rows and not noted.count:
         raise InputError(
             f"{path}, line {header_line}: no rows of data below the header; expected at least one"
         )
     return Table(path, header, header_line, tuple(lines), tuple(rows), digest.hexdigest())
+
+
+def _may_be_row(text: str, header: tuple[str, ...]) -> bool:
+    cells = _cells(text)
+    if cells is None or len(cells) != len(header) or "[" in header[0]:
+        return False
+    return any(
+        "[" in name and _DIGITS.fullmatch(cell.strip()) for name, cell in zip(header, cells, strict=True)
+    )
+
+
+def _length(cells: tuple[str, ...], expected: int) -> str:
+    """What is wrong with the number of cells of a row, and what may be behind it."""
+    found = f"found {len(cells)} cells; expected {expected} as in the header"
+    if not any(cell.strip() for cell in cells):
+        return f"{found}; the row is empty: remove its commas"
+    if len(cells) > expected and not any(cell.strip() for cell in cells[expected:]):
+        return f"{found}; those too many are empty: remove the commas at the end"
+    if len(cells) > expected:
+        return f"{found}; is the decimal separator a comma, or do commas stand between thousands? Write 0.5 and 1000"
+    return found
 
 
 def text_lines(path: Path) -> Iterator[tuple[int, str]]:
@@ -138,7 +184,11 @@ def text_lines(path: Path) -> Iterator[tuple[int, str]]:
 
 def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
     try:
+        if path.exists() and not path.is_dir() and not path.is_file():
+            raise InputError(f"{path}: neither a file nor a folder; expected a CSV file")
         with path.open("rb") as stream:
+            if os.fstat(stream.fileno()).st_size > LARGEST_FILE:
+                raise InputError(f"{path}: more than {LARGEST_FILE:,} bytes; expected a table")
             number = 0
             while raw := stream.readline(_LONGEST_LINE):
                 number += 1
@@ -176,22 +226,34 @@ def _decode(raw: bytes, path: Path, number: int) -> str:
 
 
 def _split(text: str, path: Path, number: int) -> tuple[str, ...]:
+    cells = _cells(text)
+    if cells is None:
+        raise InputError(
+            f'{path}, line {number}: quotation marks do not match; expected cells such as "a, b" on one line'
+        )
+    return cells
+
+
+def _cells(text: str) -> tuple[str, ...] | None:
+    """Cells of a line; None if its quotation marks do not match."""
     if '"' not in text:
         return tuple(text.split(","))
     try:
         return tuple(next(csv.reader([text], strict=True, skipinitialspace=True)))
     except (csv.Error, StopIteration):
-        raise InputError(
-            f'{path}, line {number}: quotation marks do not match; expected cells such as "a, b" on one line'
-        ) from None
+        return None
 
 
-def _check_separator(text: str, path: Path, number: int) -> None:
-    if "," in text:
-        return
+def _check_header(text: str, comment: str, path: Path, number: int) -> None:
     for character, name in ((";", "semicolons"), ("\t", "tabs")):
-        if character in text:
+        if character in text and "," not in text:
             raise InputError(
                 f"{path}, line {number}: cells are separated by {name}; expected commas between cells and "
                 "points as decimal separators"
             )
+    numbers = [bool(_DIGITS.fullmatch(cell.strip())) for cell in text.split(",")]
+    if all(numbers):
+        hint = "; the header above it begins with #: remove the #" if "[" in comment else ""
+        raise InputError(
+            f"{path}, line {number}: found numbers; expected a header line first, such as 'normal_force [N]'{hint}"
+        )

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from unicodedata import normalize
 
 from skinbayes.errors import InputError
 from skinbayes.vocabulary import suggestions
@@ -53,7 +54,8 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
     """
     text = read_text(path)
     try:
-        return tomllib.loads(text.replace("\r\n", "\n")), text
+        content = tomllib.loads(text.replace("\r\n", "\n"))
+        return (content if text.isascii() else _composed(content)), text
     except tomllib.TOMLDecodeError as error:
         message = str(error)
         found = re.search(r"\(at line (\d+), column (\d+)\)", message)
@@ -66,6 +68,15 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
         raise InputError(f"{path}: nested too deeply to be a model file") from None
 
 
+def _composed(item: Any, key: str = "") -> Any:
+    """Keys and text in Unicode normal form C, as labels of data have; paths as they are, since files are called so."""
+    if isinstance(item, dict):
+        return {normalize("NFC", name): _composed(value, name) for name, value in item.items()}
+    if isinstance(item, list):
+        return [_composed(value, key) for value in item]
+    return normalize("NFC", item) if isinstance(item, str) and key not in ("file", "yardsticks") else item
+
+
 def line_of(text: str, keys: Sequence[str]) -> int | None:
     """Line (from 1) on which the key path ``keys`` is set, or the deepest part of it that can be found.
 
@@ -74,7 +85,7 @@ def line_of(text: str, keys: Sequence[str]) -> int | None:
     >>> line_of("title = 'x'\\n[parameters]\\nyield_stress = 3\\n", ["parameters", "yield_stress"])
     3
     """
-    lines = text.splitlines()
+    lines = normalize("NFC", text).splitlines()
     best: int | None = None
     start = 0
     depth = 0

@@ -146,7 +146,12 @@ def _from_copies(run: Path, manifest: Manifest) -> Problem:
 
 def _renamed(problem: Problem, provenance: Mapping[str, Any]) -> Problem:
     """The problem under the names it was fitted with, not those of the copies in the run directory."""
-    spec = replace(problem.spec, name=str(provenance["model"]))
+    spec = replace(
+        problem.spec,
+        name=str(provenance["model"]),
+        title=str(provenance.get("title", problem.spec.title)),
+        description=str(provenance.get("description", problem.spec.description)),
+    )
     key = str(provenance["data"].get("key", ""))
     dataset = None if problem.dataset is None else replace(problem.dataset, key=key or problem.dataset.key)
     return replace(problem, spec=spec, dataset=dataset)

@@ -117,7 +117,7 @@ def _priors(problem: Problem) -> tuple[str, ...]:
         if prior is None:
             continue
         low, high = prior.interval(0.9)
-        ends = [format_quantity(end, parameter.unit, 3) for end in (low, high)]
+        ends = [format_quantity(end, parameter.unit, 3, parameter.prior_text) for end in (low, high)]
         line = f"{parameter.label}: {parameter.prior_text}; 90 % between {' and '.join(ends)}."
         if not parameter.source:
             line += " No source is given."

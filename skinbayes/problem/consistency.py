@@ -100,6 +100,13 @@ def check_derived(
                 "of a quantity"
             )
         for column, levels in block.rows.items():
+            if whole_data and column not in conditions.labels:
+                has = ", ".join([*conditions.labels, *conditions.values]) or "none that the model takes"
+                raise InputError(
+                    f"{spec.path}: the data have no column '{column}', by which derived.{name} chooses rows; columns: {has}. "
+                    f"Add it ('skinbayes template {spec.path.name}' prints the header that the model needs), or take what "
+                    f"differs by {column} out of the model file"
+                )
             unknown = set(levels) - set(conditions.labels.get(column, ()))
             if unknown and whole_data:
                 raise InputError(

@@ -114,7 +114,10 @@ def _plan_one(name: str, entries: list[tuple[ParameterSpec, int]], conditions: C
         value = np.nan if spec.value is None else spec.value
         return InputPlan(name, np.array([position]), np.array([value]))
     if column not in conditions.labels:
-        raise InputError(f"{name} differs by '{column}', but the rows have no column '{column}'")
+        raise InputError(
+            f"{name} differs by '{column}', but the rows have no column '{column}': add it ('skinbayes template' prints the "
+            "header that a model needs)"
+        )
     index = np.full(conditions.n_rows, -2)
     fixed = np.full(conditions.n_rows, np.nan)
     for spec, position in entries:

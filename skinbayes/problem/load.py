@@ -86,6 +86,8 @@ def load_problem(
         bound = default_rows(spec, taken)
     else:
         dataset = _dataset(spec, data)
+        if data is not None and not isinstance(data, Dataset):
+            spec = _of_other_data(spec, dataset)
         bound, observations = data_rows(spec, forward, dataset, taken)
     given = {p.name for p in parameters} | set(bound.values)
     if curves and REPLACED in given:
@@ -142,6 +144,17 @@ def load_problem(
         except InputError as error:
             raise InputError(f"{spec.path}: {'at the prior medians ' if free else ''}{error}") from None
     return problem
+
+
+def _of_other_data(spec: ModelSpec, dataset: Dataset) -> ModelSpec:
+    """The model with a title and a description that do not tell of the data it was written for."""
+    name = dataset.path.name
+    return replace(
+        spec,
+        title=f"{name}, with the model '{spec.name}'",
+        description=f"The data are the user's own, {name}. Forward model, priors and noise are those of '{spec.name}' "
+        f"({spec.title}); whether they suit these data is for the user to say.",
+    )
 
 
 def _surface(

@@ -10,6 +10,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset, load_dataset
+from skinbayes.files.locate import shipped_folder
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.forward import ForwardModel
 from skinbayes.problem.covariates import covariate_columns
@@ -85,10 +86,20 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
     if spec.spread == "use":
         if spread_column not in dataset.columns:
             raise InputError(
-                f"{spec.path}: data.spread = \"use\", but {dataset.path} has no column '{spread_column}'"
+                f"{spec.path}: data.spread = \"use\", but {dataset.path} has no column '{spread_column}'. "
+                f"{_ways_out(spec, dataset, 'spread', f'that column, the standard deviation of each {name}')}"
             )
         spread = np.asarray(dataset.columns[spread_column], dtype=float)
     return Observation(name, values, spread, noise, several)
+
+
+def _ways_out(spec: ModelSpec, dataset: Dataset, key: str, column: str) -> str:
+    """What to do about a spread that the model file uses and the data do not have."""
+    where = "the model file"
+    if spec.path.parent == shipped_folder("models"):
+        copy = f"'skinbayes new {spec.name} --data {dataset.path.name} -o mine.toml'"
+        where = f"a copy of the model, such as {copy} writes for these data"
+    return f'Either add {column}, or, if it is not known, write {key} = "ignore" under [data] of {where}'
 
 
 def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -> dict[str, FloatArray]:
@@ -117,7 +128,7 @@ def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -
     ):
         raise InputError(
             f'{spec.path}: data.input_spread = "use", but no input among the columns of {dataset.path} has a column '
-            f"'<input>{STANDARD_DEVIATION_SUFFIX}'"
+            f"'<input>{STANDARD_DEVIATION_SUFFIX}'. {_ways_out(spec, dataset, 'input_spread', 'one')}"
         )
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from unicodedata import normalize
 
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
@@ -37,7 +38,8 @@ def apply_settings(
     surface: str | None = None
     done: set[str] = set()
     known = {*forward.input_names(), *(("surface",) if forward.uses_surface else ())}
-    for key, text in settings.items():
+    for written, text in settings.items():
+        key = normalize("NFC", written)  # as levels have it
         if key == "surface" and forward.uses_surface:
             surface = text
             continue
@@ -46,7 +48,7 @@ def apply_settings(
             raise InputError(f"--set {key}: '{spec.name}' has no input '{name}'.{suggestions(name, sorted(known))} "
                              f"It takes {', '.join(sorted(known))}")  # fmt: skip
         value = parse_value(QUANTITIES[name], text, f"--set {key}")
-        parameters = _replace(parameters, name, level, value, key)
+        parameters = _replace(parameters, name, level, value, key, text)
         done.add(name)
     if surface is not None:
         # a surface that is set replaces the roughness of the file, except what is set beside it
@@ -57,18 +59,21 @@ def apply_settings(
 
 
 def _replace(
-    parameters: list[ParameterSpec], name: str, level: str, value: float, key: str
+    parameters: list[ParameterSpec], name: str, level: str, value: float, key: str, text: str
 ) -> list[ParameterSpec]:
     unit = QUANTITIES[name].unit
     if not level:
         kept = [p for p in parameters if p.name != name]
-        return [*kept, ParameterSpec(name, unit, None, None, value, None, "set", "set by the user")]
+        return [
+            *kept,
+            ParameterSpec(name, unit, None, None, value, None, f"set to {text}", "set by the user"),
+        ]
     levels = [p.level for p in parameters if p.name == name]
     if level not in levels:
         found = ", ".join(str(item) for item in levels if item) or "no levels"
         raise InputError(f"--set {key}: {name} has {found}; '{level}' is not one of them")
     return [
-        ParameterSpec(name, unit, p.by, level, value, None, "set", "set by the user")
+        ParameterSpec(name, unit, p.by, level, value, None, f"set to {text}", "set by the user")
         if p.name == name and p.level == level
         else p
         for p in parameters

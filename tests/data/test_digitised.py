@@ -144,7 +144,7 @@ DAMAGED_CSV: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "commas for everything": ("x,y\n0,1,0,5\n", ("line 2", "found 4 cells", "decimal separators")),
     "both separators": ("1.5;2\n1,5;3\n", ("line 2", "'1,5'", "cannot be told")),
     "infinite": ("1,2\n1e999,2\n", ("line 2", "'1e999'", "expected a number")),
-    "several problems": ("1,2\na,b\n", ("line 2", "1 more problem")),
+    "several problems": ("1,2\na,b\n", ("2 problems", "line 2, column 1", "line 2, column 2")),
     "titles only": ("x,y\n", ("no points",)),
     "date": ("2020/01/01,1\n", ("line 1", "column 1 (abscissa)", "'2020/01/01'", "expected a number")),
     "open quotes": ('1,2\n"3,4\n', ("line 2", "quotation marks")),

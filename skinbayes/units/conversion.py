@@ -1,8 +1,8 @@
-"""Text with a unit to an SI number and back: the only door through which units pass.
+"""Text with a unit to an SI number: the only door through which units pass.
 
 Inside skinbayes every number is in SI. What a person types (``"15 MPa"``, a header ``normal_force [mN]``) is
-converted here, once, and a wrong or missing unit is an error that names the place. Pint does the dimensional
-analysis.
+converted here, once, and a wrong or missing unit is an error that names the place. `words` says which units
+there are; Pint does the dimensional analysis.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import cache, lru_cache
-from math import inf, isfinite, isnan
+from math import inf, isfinite
 from numbers import Real
 from typing import Any
 
@@ -18,17 +18,12 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
+from skinbayes.units.numbers import comma_advice, number_text
+from skinbayes.units.words import UnknownUnit, canonical_unit, nearest_units, why_no_unit
 
 _NUMBER = re.compile(
     r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf(?:inity)?(?![a-z])", re.IGNORECASE
 )
-# Names, products, quotients and one-digit powers only: Pint evaluates arithmetic in unit text, and a tower of
-# powers would keep it busy for ever.
-_UNIT = re.compile(
-    r"(?:\s+|[*/·()]|(?:\^|\*\*)\s*-?[1-9](?!\s*(?:[0-9^]|\*\*))|1(?=\s*/)|[⁻¹²³⁴]+|[A-Za-zµμΩÅ°%_]+)+",
-    re.UNICODE,
-)
-_LONGEST_UNIT = 40
 _HEADER = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 
 _MEANING = {
@@ -47,6 +42,10 @@ _MEANING = {
     "s": ("a time", "30 s"),
     "m^3": ("a volume or a one-dimensional power spectrum", "5e-8 m^3"),
     "m^4": ("a two-dimensional power spectrum", "1e-22 m^4"),
+    "J/kg": ("an energy per mass", "2.4 MJ/kg"),
+    "kg": ("a mass", "1 kg"),
+    "m^2/s": ("a kinematic viscosity, which is the viscosity over the density", "1 m^2/s"),
+    "1/s^2": ("a rate of a rate", "1 1/s^2"),
 }
 
 
@@ -63,44 +62,58 @@ def _registry() -> Any:
     return UnitRegistry(cache_folder=None)
 
 
+class OtherDimension(ValueError):
+    """A unit of another dimension; ``meaning`` says of what, if that has a name."""
+
+    def __init__(self, text: str, meaning: str) -> None:
+        super().__init__(text)
+        self.meaning = meaning
+
+
 @lru_cache(maxsize=512)
-def _conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
+def unit_conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
     """``(multiplier, divisor, offset)`` with ``to = from * multiplier / divisor + offset``.
 
     A factor such as 1e-6 is kept as a division by 1e6, which rounds once: "20 um" is then the number that
-    2e-5 denotes. LookupError for an unknown unit, ValueError for one of another dimension.
+    2e-5 denotes. UnknownUnit for an unknown unit, OtherDimension for one of another dimension.
     """
     registry = _registry()
-    text = from_unit.strip()
     target = registry.parse_units("" if to_unit == "1" else to_unit)
-    if text in ("", "1", "-"):
-        source = registry.parse_units("")
-    elif len(text) > _LONGEST_UNIT or not _UNIT.fullmatch(text) or text.startswith(("/", "*", "·", "^")):
-        raise LookupError(text)
-    else:
-        try:
-            source = registry.parse_units(text)
-        except Exception as error:  # Pint's parser has many ways to fail; all mean "not a unit"
-            raise LookupError(text) from error
-    if source.dimensionality != target.dimensionality:
-        raise ValueError(text)
-    one, zero = registry.Quantity(1.0, source), registry.Quantity(0.0, source)
-    # Pint takes an angle for a number; a friction coefficient in degrees is a mistake nevertheless.
-    if source.dimensionless and registry.get_base_units(source)[1] != registry.get_base_units(target)[1]:
-        raise ValueError(text)
+    canonical = canonical_unit(from_unit)
     try:
-        offset = float(zero.to(target).magnitude)
-        factor = float(one.to(target).magnitude) - offset
+        source = registry.parse_units(canonical)
+    except Exception as error:  # Pint's parser has many ways to fail; all mean "not a unit"
+        raise UnknownUnit(from_unit) from error
+    # Pint takes an angle for a number; a friction coefficient in degrees is a mistake nevertheless.
+    angle = source.dimensionless and registry.get_base_units(source)[1] != registry.get_base_units(target)[1]
+    if angle or source.dimensionality != target.dimensionality:
+        raise OtherDimension(from_unit, _meaning_of(source))
+    try:
+        offset = float(registry.Quantity(0.0, source).to(target).magnitude)
+        if offset != 0.0:  # the scale of a temperature: far from its zero the difference keeps its digits
+            factor = (float(registry.Quantity(1e6, source).to(target).magnitude) - offset) / 1e6
+            return (1.0 if abs(factor - 1.0) < 1e-12 else factor), 1.0, offset
+        factor = float(registry.Quantity(1.0, source).to(target).magnitude)
     except Exception as error:  # such as a product with an offset temperature
-        raise LookupError(text) from error
+        raise UnknownUnit(from_unit) from error
     if not isfinite(factor) or factor <= 0:
-        raise LookupError(text)
+        raise UnknownUnit(from_unit)
     inverse = 1.0 / factor
-    if offset != 0.0:
-        return 1.0, 1.0, offset
     if factor < 1.0 and isfinite(inverse) and abs(inverse - round(inverse)) <= 1e-12 * inverse:
         return 1.0, float(f"{round(inverse):.15g}"), 0.0
     return (float(f"{factor:.15g}") if factor == round(factor) else factor), 1.0, 0.0
+
+
+def _meaning_of(source: Any) -> str:
+    registry = _registry()
+    if source.dimensionless:
+        return "an angle" if registry.get_base_units(source)[1] != registry.Unit("") else _MEANING["1"][0]
+    same = (
+        meaning
+        for unit, (meaning, _) in _MEANING.items()
+        if unit not in ("1", "rad") and registry.parse_units(unit).dimensionality == source.dimensionality
+    )
+    return next(same, "")
 
 
 def convert_array(
@@ -131,26 +144,51 @@ def convert_array(
     >>> convert_array([0.5, 2.0], "mN", "N", "column normal_force")
     array([0.0005, 0.002 ])
     """
-    multiplier, divisor, offset = _explained_conversion(from_unit, to_unit, where)
+    multiplier, divisor, offset = _explained_conversion(from_unit, to_unit, where, difference=difference)
     numbers = np.asarray(values, dtype=float)
-    if offset != 0.0 and not difference:
-        return np.asarray(numbers + offset)
     with np.errstate(over="ignore"):  # a value beyond the largest number becomes inf, which readers refuse
-        return np.asarray(numbers * multiplier / divisor)
+        scaled = np.asarray(numbers * multiplier / divisor)
+    return scaled if difference or offset == 0.0 else np.asarray(scaled + offset)
 
 
 def _explained_conversion(
-    from_unit: str, to_unit: str, where: str, found: str | None = None
+    from_unit: str, to_unit: str, where: str, found: str | None = None, difference: bool = False
 ) -> tuple[float, float, float]:
-    """`_conversion`, with errors that say where; ``found`` is the text around the unit, if there is any."""
-    unit = f"unit {from_unit[:_LONGEST_UNIT]!r}"
+    """`unit_conversion`, with errors that say where; ``found`` is the text around the unit, if there is any."""
+    unit = f"unit {_shortened(from_unit)!r}"
+    if "delta_" in from_unit and not difference:
+        raise InputError(f"{where}: {found or unit} is a difference; expected {describe_unit(to_unit)}")
     try:
-        return _conversion(from_unit, to_unit)
-    except LookupError:
+        return unit_conversion(from_unit, to_unit)
+    except UnknownUnit as error:
         problem = f"{unit} is unknown" if found is None else f"{found} has an unknown unit"
-    except ValueError:
+        problem += _advice(error, to_unit)
+    except OtherDimension as error:
         problem = f"{unit if found is None else found} has the wrong dimension"
+        problem += f" ({error.meaning})" if error.meaning else ""
     raise InputError(f"{where}: {problem}; expected {describe_unit(to_unit)}")
+
+
+def _advice(unknown: UnknownUnit, to_unit: str) -> str:
+    """What may have been meant: units like it that have the right dimension, or why a word is no unit."""
+    if why := why_no_unit(unknown.word):
+        return f" ({why})"
+    fitting = [text for text in nearest_units(unknown) if _fits(text, to_unit)][:2]
+    if not fitting and unknown.word and unknown.word != unknown.text:
+        return f" (no word {_shortened(unknown.word)!r} is known in units)"
+    return f" (did you mean {' or '.join(repr(text) for text in fitting)}?)" if fitting else ""
+
+
+def _fits(text: str, to_unit: str) -> bool:
+    try:
+        unit_conversion(text, to_unit)
+    except (UnknownUnit, OtherDimension):
+        return False
+    return True
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
@@ -187,7 +225,7 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
     expected = f"expected {describe_unit(unit)}"
     if isinstance(value, bool) or not isinstance(value, str | Real):
         raise InputError(f"{where}: {value!r:.80} is not a number; {expected}")
-    text = value.strip() if isinstance(value, str) else _number_text(value)
+    text = value.strip() if isinstance(value, str) else number_text(value)
     match = _NUMBER.match(text)
     if match is None:
         raise InputError(f"{where}: {text[:80]!r} is not a number with a unit; {expected}")
@@ -195,8 +233,8 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
     spelled_infinite = "inf" in match.group().lower()
     if not isfinite(number) and not (spelled_infinite and number > 0):
         raise InputError(f"{where}: {text[:80]!r} is not a number that can be used; {expected}")
-    if unit_text.startswith(",") and unit_text[1:2].isdigit():
-        raise InputError(f"{where}: {text[:80]!r} has a decimal comma; write a decimal point; {expected}")
+    if advice := comma_advice(re.split(r"\s+(?=[^\s0-9,.])", text, maxsplit=1)[0]):
+        raise InputError(f"{where}: {text[:80]!r} has {advice}; {expected}")
     if not unit_text:
         if number == inf or unit == "1":
             return number
@@ -207,14 +245,6 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
     if result == inf and not spelled_infinite:
         raise InputError(f"{where}: {found} is too large for a number; {expected}")
     return result
-
-
-def _number_text(value: Real) -> str:
-    try:
-        number = float(value)
-    except OverflowError:
-        return "1e999"
-    return "nan" if isnan(number) else repr(int(number)) if isinstance(value, int) else repr(number)
 
 
 def split_header(header: str) -> tuple[str, str | None]:
@@ -235,52 +265,6 @@ def split_header(header: str) -> tuple[str, str | None]:
         return header.strip(), None
     unit = match.group("unit")
     return match.group("name").strip(), None if unit is None else unit.strip()
-
-
-_PREFIXES = (
-    (1e9, "G"),
-    (1e6, "M"),
-    (1e3, "k"),
-    (1.0, ""),
-    (1e-3, "m"),
-    (1e-6, "µ"),
-    (1e-9, "n"),
-    (1e-12, "p"),
-)
-# unit that takes a prefix: largest prefix in use (nobody here thinks in kilometres), power
-_PREFIXED = {"m^2": (1.0, 2), "Pa": (1e9, 1), "N": (1e3, 1), "J": (1e3, 1), "m": (1.0, 1), "s": (1.0, 1)}
-
-
-def format_quantity(value_si: float, unit: str, digits: int = 4) -> str:
-    """Write an SI value for people, with a prefix where that is usual.
-
-    Parameters
-    ----------
-    value_si : value in ``unit``
-    unit : SI unit as in the vocabulary
-    digits : significant digits
-
-    Examples
-    --------
-    >>> format_quantity(15e6, "Pa"), format_quantity(2.24e-5, "m"), format_quantity(0.42, "1")
-    ('15 MPa', '22.4 µm', '0.42')
-    >>> format_quantity(1e9, "1/m"), format_quantity(float("inf"), "Pa"), format_quantity(3.81e-4, "m^2")
-    ('1e9 1/m', 'inf', '381 mm^2')
-    """
-    if not isfinite(value_si):
-        return str(float(value_si))
-    if unit == "K":
-        digits += 1  # 293.15 K and 293.1 K are not the same room
-    rounded = float(f"{value_si:.{digits}g}")
-    base = next((name for name in _PREFIXED if re.match(rf"{re.escape(name)}(?![\w^])", unit)), None)
-    if base is None:
-        return _plain(rounded, digits) + ("" if unit == "1" else f" {unit}")
-    largest, power = _PREFIXED[base]
-    for size, prefix in _PREFIXES:
-        scale = size**power
-        if size <= largest and abs(rounded) >= (0.1 if scale == 1.0 and base in ("N", "s") else scale):
-            return f"{_plain(rounded / scale, digits)} {prefix}{unit}"
-    return f"{_plain(rounded, digits)} {unit}"
 
 
 def product_unit(factors: Iterable[tuple[str, float]]) -> str:
@@ -308,11 +292,3 @@ def product_unit(factors: Iterable[tuple[str, float]]) -> str:
     known = ("Pa", "N/m", "N", "m", "1/m", "m/s", "s", "1/s", "Pa s", "m^2", "K")
     same = (unit for unit in known if product.check(registry.Quantity(1.0, unit).dimensionality))
     return next(same, None) or f"{product.to_base_units().units:~}"
-
-
-def _plain(number: float, digits: int) -> str:
-    text = f"{number:.{digits}g}"
-    if "e" in text:
-        mantissa, exponent = text.split("e")
-        return f"{mantissa}e{int(exponent)}"
-    return text

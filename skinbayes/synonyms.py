@@ -1,0 +1,164 @@
+"""What people call the quantities and labels of the vocabulary: for suggestions, never to be read in silence."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Collection
+from difflib import get_close_matches
+
+_SYNONYMS = {
+    "friction_coefficient": "mu cof friction friction_coeff friction_factor coefficient_of_friction coeff_of_friction "
+    "friction_coefficient_mu dynamic_friction kinetic_friction mean_friction cof_mean mu_mean static_friction",
+    "normal_force": "load force normal_load applied_load applied_force contact_force fn f_n f_normal force_normal weight",
+    "sphere_radius": "radius ball_radius probe_radius tip_radius indenter_radius sphere_r radius_of_curvature",
+    "sliding_speed": "velocity speed sliding_velocity sliding_rate stroke_speed v_slide",
+    "viscosity": "eta visc dynamic_viscosity shear_viscosity",
+    "shear_rate": "gamma_dot gammadot strain_rate rate_of_shear",
+    "speed_viscosity_product": "eta_v etav viscosity_speed_product viscosity_times_speed",
+    "temperature": "temp skin_temperature t_skin",
+    "air_temperature": "room_temperature ambient_temperature t_air",
+    "relative_humidity": "rh humidity hum rel_humidity air_humidity ambient_humidity",
+    "time": "t elapsed elapsed_time time_after_wetting duration",
+    "nominal_pressure": "pressure contact_pressure mean_pressure p_0",
+    "nominal_contact_area": "contact_area area apparent_area apparent_contact_area nominal_area",
+    "relative_contact_area": "contact_area real_contact_area area_ratio area_fraction",
+    "frictional_shear_stress": "shear_stress tau shear_strength interfacial_shear_strength interfacial_shear_stress sigma_f",
+    "young_modulus_layer": "young_modulus youngs_modulus young_s_modulus modulus elastic_modulus layer_modulus modulus_layer "
+    "stratum_corneum_modulus youngs_modulus_layer e_0 e_layer e_sc",
+    "young_modulus_bulk": "young_modulus youngs_modulus young_s_modulus modulus elastic_modulus bulk_modulus_of_elasticity "
+    "tissue_modulus dermis_modulus modulus_bulk youngs_modulus_bulk e_1 e_bulk e_tissue",
+    "poisson_ratio_layer": "poisson poisson_ratio nu poissons_ratio",
+    "poisson_ratio_bulk": "poisson poisson_ratio nu poissons_ratio",
+    "yield_stress": "hardness yield_strength indentation_hardness penetration_hardness sigma_y",
+    "layer_thickness": "thickness stratum_corneum_thickness sc_thickness",
+    "rms_height": "roughness rq sq rms rms_roughness roughness_rms h_rms",
+    "hurst_exponent": "hurst roughness_exponent",
+    "wavevector": "wavenumber wave_number wave_vector",
+    "surface_tension": "surface_energy gamma_w",
+    "contact_angle_skin": "contact_angle angle theta water_contact_angle",
+    "contact_angle_counterface": "contact_angle theta angle_glass contact_angle_glass",
+    "film_thickness": "film water_film water_film_thickness water_thickness d_film",
+    "droplet_volume": "volume drop_volume water_volume",
+    "evaporation_rate": "evaporation drying_rate",
+    "skin_hydration": "hydration moisture corneometer corneometry skin_moisture",
+    "noise_scale": "noise sigma sd std scatter noise_sigma",
+    "degrees_of_freedom": "dof df",
+    "person": "subject participant volunteer individual patient donor proband panelist panellist subject_id participant_id "
+    "person_id subject_no subject_number",
+    "body_site": "site location body_location body_part skin_site anatomical_site body_region region measurement_site",
+    "liquid": "lubricant fluid oil solution",
+    "counterface": "material counter_surface countersurface counterbody counter_body probe_material substrate slider",
+    "state": "condition skin_state skin_condition wetness hydration_state",
+    "source": "reference ref study paper",
+}  # fmt: skip
+"""Name to what people write for it, in small letters with underscores."""
+
+_OTHERWISE = {
+    "sphere_radius": (
+        "half of the diameter: halve the values",
+        "diameter sphere_diameter ball_diameter probe_diameter tip_diameter indenter_diameter",
+    ),
+    "friction_coefficient": (
+        "the friction force over the normal force: divide",
+        "friction_force tangential_force lateral_force shear_force f_t ft frictional_force",
+    ),
+    "viscosity": ("the kinematic viscosity times the density", "kinematic_viscosity"),
+    "hurst_exponent": ("3 minus the fractal dimension", "fractal_dimension"),
+    "rms_height": ("the root-mean-square height, which is larger than the mean height Ra", "ra sa mean_roughness roughness_ra"),
+    "speed_viscosity_product": (
+        "not divided by a load: multiply by it",
+        "hersey hersey_number stribeck_number sommerfeld_number",
+    ),
+    "wavevector": ("2π over the wavelength", "wavelength spatial_frequency"),
+    "sliding_speed": ("2π times the radius times the rotations per time", "rpm rotation_speed rotational_speed"),
+}  # fmt: skip
+"""Name to what it is instead of something else that people write, and what that is called."""
+
+_SPREAD = re.compile(
+    r"(?:(?P<before>sd|std|stdev|sigma|err|error|uncertainty)_(?:of_)?)?(?P<base>.+?)"
+    r"(?:_(?P<after>sd|s_d|std|stdev|stddev|std_dev|st_dev|sigma|se|sem|std_err|stderr|standard_error|err|error|unc|uncertainty|"
+    r"spread|standard_dev|deviation))?"
+)
+_ERRORS = ("se", "sem", "std_err", "stderr", "standard_error")
+_CUTOFF = 0.75
+
+
+def plain_name(name: str) -> str:
+    """A name in small letters with underscores, compatibility forms of letters resolved.
+
+    Examples
+    --------
+    >>> plain_name(" Friction Coefficient"), plain_name("Young's modulus")
+    ('friction_coefficient', 'youngs_modulus')
+    """
+    text = unicodedata.normalize("NFKC", name).replace("'", "").replace("’", "")
+    return re.sub(r"[\s_.,:/-]+", "_", text).strip("_").lower()
+
+
+def likely_meant(
+    name: str, known: Collection[str], symbols: dict[str, str], spread: str
+) -> list[tuple[str, str]]:
+    """Which of the known names is meant by one that is not among them, the likeliest first, each with a remark or ``""``.
+
+    Parameters
+    ----------
+    name : as it was written
+    known : names that would be understood
+    symbols : symbols in equations to names
+    spread : ending of names of spreads
+
+    Examples
+    --------
+    >>> likely_meant("COF", ["friction_coefficient"], {}, "_standard_deviation")
+    [('friction_coefficient', '')]
+    >>> likely_meant("ball diameter", ["sphere_radius"], {}, "_standard_deviation")
+    [('sphere_radius', 'half of the diameter: halve the values')]
+    """
+    plain = plain_name(name[:80])
+    alike = {plain_name(one): one for one in known}
+    found = _called(name.strip(), plain, alike, known, symbols)
+    if not found:
+        found = _spread_of(plain, alike, known, symbols, spread)
+    if not found and len(plain) > 2:
+        close = get_close_matches(plain, list(alike), n=2, cutoff=_CUTOFF)
+        words = set(plain.split("_"))
+        parts = [one for one in alike if len(plain) > 3 and words <= set(one.split("_"))]
+        found = [(alike[one], "") for one in (close or (parts if len(parts) <= 2 else []))]
+    return found
+
+
+def _called(
+    name: str, plain: str, alike: dict[str, str], known: Collection[str], symbols: dict[str, str]
+) -> list[tuple[str, str]]:
+    """The known names that this is: written otherwise, as a symbol, or by a synonym."""
+    if plain in alike:
+        return [(alike[plain], "")]
+    bare = {re.sub("[^a-z0-9]", "", one): written for one, written in alike.items()}
+    if len(plain) > 3 and (joined := re.sub("[^a-z0-9]", "", plain)) in bare:
+        return [(bare[joined], "")]
+    symbol = unicodedata.normalize("NFKC", name)
+    for written, quantity in symbols.items():
+        if symbol in (written, written.replace("_", "")) and quantity in known:
+            return [(quantity, "")]
+    found = [(one, "") for one, words in _SYNONYMS.items() if one in known and plain in words.split()]
+    found += [
+        (one, why) for one, (why, words) in _OTHERWISE.items() if one in known and plain in words.split()
+    ]
+    return found[:2]
+
+
+def _spread_of(
+    plain: str, alike: dict[str, str], known: Collection[str], symbols: dict[str, str], spread: str
+) -> list[tuple[str, str]]:
+    """Names of spreads, where the name is that of a known quantity with one of the usual words for a spread."""
+    split = _SPREAD.fullmatch(plain)
+    if split is None or not (split["before"] or split["after"]):
+        return []
+    base = split["base"]
+    remark = "for a mean of several readings this is its standard error" if split["after"] in _ERRORS else ""
+    return [
+        (one + spread, remark)
+        for one, why in _called(base, base, alike, known, symbols)
+        if not why and not one.endswith(spread)
+    ]

@@ -1,0 +1,24 @@
+"""Text with a unit to an SI number and back: what units there are, conversion, numbers for people."""
+
+from skinbayes.units.conversion import (
+    convert_array,
+    describe_unit,
+    parse_quantity,
+    product_unit,
+    split_header,
+)
+from skinbayes.units.format import format_quantity
+from skinbayes.units.numbers import comma_advice
+from skinbayes.units.words import is_unit, unit_table
+
+__all__ = [
+    "comma_advice",
+    "convert_array",
+    "describe_unit",
+    "format_quantity",
+    "is_unit",
+    "parse_quantity",
+    "product_unit",
+    "split_header",
+    "unit_table",
+]

@@ -1,0 +1,52 @@
+"""Numbers as people write them that are not read: commas, and marks between thousands."""
+
+from __future__ import annotations
+
+import re
+from math import isnan
+from numbers import Real
+
+_GROUPED = re.compile(r"[+-]?[0-9]{1,3}(?:(?P<mark>[,'’  \u00a0\u2009\u202f])[0-9]{3})(?:(?P=mark)[0-9]{3})*")
+_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?:[eE][+-]?[0-9]+)?")
+_MIXED = re.compile(r"[+-]?[0-9]{1,3}(?:[.,][0-9]{3})+[.,][0-9]+(?:[eE][+-]?[0-9]+)?")
+
+
+def comma_advice(number: str) -> str:
+    """What to write instead of a number with a comma or with separated thousands; empty if there is neither.
+
+    Examples
+    --------
+    >>> comma_advice("0,5")
+    'a decimal comma; write 0.5'
+    >>> comma_advice("1,000")
+    "a comma that may stand before decimals or between thousands; write 1.000 if it is decimal, 1000 if it is a thousand's"
+    >>> comma_advice("1 000"), comma_advice("1.5")
+    ('separated thousands; write 1000', '')
+    """
+    if len(number) > 40:
+        return ""
+    if grouped := _GROUPED.fullmatch(number):
+        joined = re.sub(r"[^0-9+-]", "", number)
+        if grouped["mark"] == "," and number.count(",") == 1 and not number.lstrip("+-").startswith("0"):
+            return (
+                "a comma that may stand before decimals or between thousands; "
+                f"write {number.replace(',', '.')} if it is decimal, {joined} if it is a thousand's"
+            )
+        if grouped["mark"] != "," or number.count(",") > 1:
+            return f"separated thousands; write {joined}"
+    if _COMMA.fullmatch(number):
+        return f"a decimal comma; write {number.replace(',', '.')}"
+    if _MIXED.fullmatch(number) and len({*number} & {*".,"}) == 2:
+        mark = "." if number.rfind(".") > number.rfind(",") else ","
+        whole, _, decimals = number.rpartition(mark)
+        return f"separated thousands; write {re.sub('[.,]', '', whole)}.{decimals}"
+    return ""
+
+
+def number_text(value: Real) -> str:
+    """A number of Python as a person would type it; ``1e999`` if it is too large."""
+    try:
+        number = float(value)
+    except OverflowError:
+        return "1e999"
+    return "nan" if isnan(number) else repr(int(number)) if isinstance(value, int) else repr(number)
