@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from math import inf, pi
 from unicodedata import normalize
 
-from skinbayes.synonyms import likely_meant
-
 from skinbayes.errors import InputError
+from skinbayes.synonyms import likely_meant
 
 
 @dataclass(frozen=True)

@@ -81,13 +81,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 standalone_mode=False,
             )
     except InputError as error:
-        click.echo(f"skinbayes: {message(str(error))}", err=True)
+        _complain(str(error))
         status = EXIT_BAD_INPUT
     except MachineError as error:
-        click.echo(f"skinbayes: {message(str(error))}", err=True)
+        _complain(str(error))
         status = EXIT_MACHINE
     except MemoryError:
-        click.echo("skinbayes: there is not enough memory", err=True)
+        _complain("there is not enough memory")
         status = EXIT_MACHINE
     except click.ClickException as error:
         shown = io.StringIO()
@@ -96,7 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             click.echo(message(line), err=True)
         status = EXIT_BAD_INPUT
     except (KeyboardInterrupt, click.Abort):
-        click.echo("skinbayes: interrupted", err=True)
+        _complain("interrupted")
         status = EXIT_INTERRUPTED
     except BrokenPipeError:
         # the reader of a pipe went away ('skinbayes show ... | head')
@@ -104,9 +104,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = 0
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"skinbayes: {message(place)}{error.strerror or error}", err=True)
+        _complain(f"{place}{error.strerror or error}")
         status = EXIT_MACHINE if error.errno in NO_SPACE else EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _complain(text: str) -> None:
+    """Say on standard error what is wrong."""
+    click.echo(f"skinbayes: {message(text)}", err=True)
 
 
 @contextmanager
@@ -116,11 +121,11 @@ def _repairs_told() -> Iterator[None]:
         warnings.simplefilter("always", RepairWarning)
         shown = warnings.showwarning
 
-        def show(text: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
             if issubclass(category, RepairWarning):
-                click.echo(f"skinbayes: {message(str(text))}", err=True)
+                _complain(str(message))
             else:
-                shown(text, category, *place, **more)
+                shown(message, category, *place, **more)
 
         warnings.showwarning = show
         yield
