@@ -265,9 +265,14 @@ def lookup(name: str) -> Quantity | None:
     return None
 
 
+_LONGEST_NAME = 100
+
+
 def suggestions(name: str, known: list[str]) -> str:
     """A sentence naming close matches of ``name``, or an empty string: ``" Did you mean 'rms_height'?"``."""
     from difflib import get_close_matches
 
+    if len(name) > _LONGEST_NAME:  # the comparison takes time with the square of the length
+        return ""
     close = get_close_matches(name, known, n=2, cutoff=0.6)
     return f" Did you mean {' or '.join(repr(match) for match in close)}?" if close else ""

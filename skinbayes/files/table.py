@@ -12,10 +12,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from skinbayes.errors import InputError
+from skinbayes.files.reading import open_file
 
 MAX_ROWS = 100_000
 """Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: with 64
 vectors every intermediate array of this many rows already takes 50 MB."""
+
+LARGEST_TABLE = 100_000_000
+"""Bytes of a table: `MAX_ROWS` long rows of numbers."""
+
+MOST_COLUMNS = 1000
+"""Columns of a table."""
+
+MOST_LINES = 2 * MAX_ROWS
+"""Lines of a table with its comments and empty lines."""
 
 _LONGEST_LINE = 100_000  # bytes; a table of quantities has lines of some hundred
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -99,6 +109,10 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS) -> Table:
             continue
         cells = _split(text, path, number)
         if header is None:
+            if len(cells) > MOST_COLUMNS:
+                raise InputError(
+                    f"{path}, line {number}: {len(cells)} columns; expected a table of at most {MOST_COLUMNS}"
+                )
             header, header_line = cells, number
             _check_separator(text, path, number)
             continue
@@ -138,10 +152,12 @@ def text_lines(path: Path) -> Iterator[tuple[int, str]]:
 
 def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
     try:
-        with path.open("rb") as stream:
+        with open_file(path, LARGEST_TABLE, "a CSV file") as stream:
             number = 0
             while raw := stream.readline(_LONGEST_LINE):
                 number += 1
+                if number > MOST_LINES:
+                    raise InputError(f"{path}: more than {MOST_LINES} lines; expected a table")
                 if b"\0" in raw:
                     raise InputError(
                         f"{path}, line {number}: found a zero byte (byte {raw.index(0) + 1} of the line); "

@@ -1,0 +1,34 @@
+"""Arithmetic that fails for numbers which no skin has, as an error for the person who wrote them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from skinbayes.errors import InputError
+
+
+@contextmanager
+def explained(path: Path, doing: str) -> Iterator[None]:
+    """Turn a failure of numerical code into an :class:`InputError` that names the model file.
+
+    Physics and linear algebra refuse what they know to be wrong; values hundreds of orders of magnitude apart overflow in places
+    that no check foresees.
+
+    Parameters
+    ----------
+    path : the model file
+    doing : what failed, such as ``"the forward model cannot be evaluated"``
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except MemoryError:
+        raise InputError(f"{path}: {doing}: it takes more memory than there is") from None
+    except (ArithmeticError, ValueError, IndexError) as error:  # that of linear algebra is a ValueError
+        raise InputError(
+            f"{path}: {doing} ({str(error).rstrip('.'):.120}); are all parameters, priors and data of the size that they "
+            "have in nature? 'skinbayes check' and 'skinbayes show' list them"
+        ) from error
