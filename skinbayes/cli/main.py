@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
 
 import click
 
@@ -55,20 +58,21 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
     try:
+        _prepare_output()
         status = cli.main(
             args=None if arguments is None else list(arguments), prog_name="skinbayes", standalone_mode=False
         )
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except InputError as error:
-        click.echo(f"skinbayes: {_printable(str(error))}", err=True)
+        _complain(_printable(str(error)))
         status = EXIT_BAD_INPUT
-    except click.UsageError as error:
-        error.show()
-        status = EXIT_BAD_INPUT
-    except click.ClickException as error:
-        error.show()
+    except click.ClickException as error:  # a wrong option, for example
+        with suppress(OSError):
+            error.show()
         status = EXIT_BAD_INPUT
     except (KeyboardInterrupt, click.Abort):
-        click.echo("skinbayes: interrupted", err=True)
+        _complain("interrupted")
         status = EXIT_INTERRUPTED
     except BrokenPipeError:
         # the reader of a pipe went away ('skinbayes show ... | head')
@@ -76,9 +80,27 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = 0
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"skinbayes: {_printable(place)}{error.strerror or error}", err=True)
+        if not place and error.errno in (errno.ENOSPC, errno.EBADF, errno.EIO):
+            place = "output cannot be written: "
+        _complain(f"{_printable(place)}{error.strerror or error}")
         status = EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _complain(text: str) -> None:
+    """One message on standard error, if that can be written."""
+    with suppress(OSError):
+        click.echo(f"skinbayes: {text}", err=True)
+
+
+def _prepare_output() -> None:
+    """Have characters that standard output cannot take replaced (σ in many code pages), and refuse to work for nobody."""
+    if sys.stdout is None:
+        raise InputError("standard output is closed; expected one to write to, such as a file or /dev/null")
+    streams: tuple[Any, ...] = (sys.stdout, sys.stderr)
+    for stream in streams:
+        if getattr(stream, "errors", None) in ("strict", "surrogateescape"):
+            stream.reconfigure(errors="replace")
 
 
 def _printable(text: str) -> str:

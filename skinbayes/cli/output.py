@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +33,9 @@ def json_option(command: _Command) -> _Command:
 
 def print_json(document: Any) -> None:
     """Print one valid JSON document; infinities become the strings "inf" and "-inf", NaN becomes null."""
-    click.echo(json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False))
+    encoding = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().replace("-", "")
+    # what a terminal of another code page cannot show, JSON can still say in ASCII
+    click.echo(json.dumps(plain(document), indent=1, ensure_ascii=encoding != "utf8", allow_nan=False))
 
 
 def plain(value: Any) -> Any:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
 from skinbayes.errors import InputError
 from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
 from skinbayes.units import parse_quantity
@@ -178,7 +180,8 @@ TAIL = 0.01
 
 def _check_sizes(prior: Prior, quantity: Quantity, where: str, unit: str) -> None:
     """Refuse a prior of which a noticeable part is too large or too small to be computed with."""
-    low, high = (float(prior.quantile(share)) for share in (TAIL, 1 - TAIL))
+    with np.errstate(all="ignore"):
+        low, high = (float(prior.quantile(share)) for share in (TAIL, 1 - TAIL))
     # one that goes through zero has any number of small values, and none of them matters
     smallest = low if prior.support[0] >= 0 else max(-low, high)
     if not (smallest >= SMALLEST and max(abs(low), abs(high)) <= LARGEST):

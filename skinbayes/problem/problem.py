@@ -255,13 +255,17 @@ class Problem:
                 quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
         return {name: _without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
 
-    def explain(self, theta: ArrayLike) -> list[str]:
-        """Sentences on why predictions at ``theta`` are missing or doubtful, empty if nothing is to be said."""
+    def explain(self, theta: ArrayLike, row: int | None = None) -> list[str]:
+        """Sentences on why predictions at ``theta`` are missing or doubtful, at all rows or one; empty if there is nothing."""
         batch, _ = self._batch(theta)
         if self.forward.explain is None:
             return []
+        inputs, tables = self.inputs(batch), self.tables
+        if row is not None:
+            inputs = {n: v[:, [row]] if v.shape[1] > 1 else v for n, v in inputs.items()}
+            tables = tables.at_row(row)
         with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
-            return self.forward.explain(self.inputs(batch), self.tables)
+            return self.forward.explain(inputs, tables)
 
     def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
         """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
