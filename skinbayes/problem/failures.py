@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+
+from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 
 
@@ -32,3 +35,13 @@ def explained(path: Path, doing: str) -> Iterator[None]:
             f"{path}: {doing} ({str(error).rstrip('.'):.120}); are all parameters, priors and data of the size that they "
             "have in nature? 'skinbayes check' and 'skinbayes show' list them"
         ) from error
+
+
+def without_underflow(values: FloatArray) -> FloatArray:
+    """A copy in which numbers too small to have all their digits, which rounding has made of nothing, are 0."""
+    return np.where(np.abs(values) < np.finfo(float).tiny, 0.0, values)
+
+
+def impossible(values: FloatArray) -> FloatArray:
+    """Log-densities in which what is no number, or infinitely likely, counts as impossible."""
+    return np.where(np.isnan(values) | (values == np.inf), -np.inf, values)

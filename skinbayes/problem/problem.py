@@ -19,7 +19,7 @@ from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
 from skinbayes.forward.base import Progress
 from skinbayes.problem.covariates import apply_covariates, factor_key
-from skinbayes.problem.failures import explained
+from skinbayes.problem.failures import explained, impossible, without_underflow
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.observations import Observation
@@ -160,7 +160,7 @@ class Problem:
         """
         batch, single = self._batch(theta)
         value = self._likelihood.pointwise(batch) if pointwise else self._likelihood.total(batch)
-        return _unbatch(_impossible(value), single)
+        return _unbatch(impossible(value), single)
 
     def log_likelihood_left_out(self, theta: ArrayLike, column: str) -> FloatArray:
         """ln p(all data of one level | all other data, θ) for each level of a grouping column, shape ``(B, levels)``.
@@ -173,12 +173,12 @@ class Problem:
             The model has no data, several observables, or no such column.
         """
         batch, single = self._batch(theta)
-        return _unbatch(_impossible(self._likelihood.left_out(batch, column)), single)
+        return _unbatch(impossible(self._likelihood.left_out(batch, column)), single)
 
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
         """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
         batch, single = self._batch(theta)
-        return _unbatch(_impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
+        return _unbatch(impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
 
     def prior_transform(self, u: ArrayLike) -> FloatArray:
         """Map the unit hypercube to parameters by the prior quantiles, as nested samplers need it; shape as ``u``."""
@@ -221,7 +221,7 @@ class Problem:
         predicted = self.evaluate(self.inputs(batch, conditions), tables)
         shape = (batch.shape[0], rows.n_rows)
         return {
-            name: _unbatch(_without_underflow(np.broadcast_to(value, shape)), single)
+            name: _unbatch(without_underflow(np.broadcast_to(value, shape)), single)
             for name, value in predicted.items()
         }
 
@@ -253,7 +253,7 @@ class Problem:
                 if not chosen.any():  # data of the user's own without such rows
                     continue
                 quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
-        return {name: _without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
+        return {name: without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
 
     def explain(self, theta: ArrayLike, row: int | None = None) -> list[str]:
         """Sentences on why predictions at ``theta`` are missing or doubtful, at all rows or one; empty if there is nothing."""
@@ -397,12 +397,3 @@ class Problem:
 
 def _unbatch(values: FloatArray, single: bool) -> FloatArray:
     return values[0] if single else values
-
-
-def _without_underflow(values: FloatArray) -> FloatArray:
-    """A copy in which numbers too small to have all their digits, which rounding has made of nothing, are 0."""
-    return np.where(np.abs(values) < np.finfo(float).tiny, 0.0, values)
-
-
-def _impossible(values: FloatArray) -> FloatArray:
-    return np.where(np.isnan(values) | (values == np.inf), -np.inf, values)
