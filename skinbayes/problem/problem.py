@@ -135,7 +135,7 @@ class Problem:
             return self.model
         prepared = self.forward
         if prepared.prepare is not None and self.observations and self.free:
-            with explained(self.spec.path, "the forward model cannot be made ready for the priors"):
+            with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
                 prepared = prepared.prepare(input_ranges(self), self.tables, progress, cores)
         self.__dict__["model"] = prepared
         return prepared
