@@ -318,6 +318,9 @@ def lookup(name: str) -> Quantity | None:
     return None
 
 
+_LONGEST_NAME = 100
+
+
 def suggestions(name: str, known: Collection[str]) -> str:
     """A sentence naming what is likely meant by ``name``, or an empty string.
 
@@ -341,4 +344,6 @@ def meant(name: str, known: Collection[str]) -> list[tuple[str, str]]:
     >>> meant("μ", list(QUANTITIES)), meant("load_sd", list(QUANTITIES))
     ([('friction_coefficient', '')], [('normal_force_standard_deviation', '')])
     """
+    if len(name) > _LONGEST_NAME:  # the comparison takes time with the square of the length
+        return []
     return likely_meant(name, known, _SYMBOLS, STANDARD_DEVIATION_SUFFIX)

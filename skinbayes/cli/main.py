@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import click
@@ -74,12 +75,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
     try:
+        _prepare_output()
         with _repairs_told():
             status = cli.main(
                 args=None if arguments is None else list(arguments),
                 prog_name="skinbayes",
                 standalone_mode=False,
             )
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except InputError as error:
         _complain(str(error))
         status = EXIT_BAD_INPUT
@@ -91,9 +95,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = EXIT_MACHINE
     except click.ClickException as error:
         shown = io.StringIO()
-        error.show(shown)
-        for line in shown.getvalue().splitlines():
-            click.echo(message(line), err=True)
+        error.show(shown)  # a wrong option, for example
+        with suppress(OSError):
+            for line in shown.getvalue().splitlines():
+                click.echo(message(line), err=True)
         status = EXIT_BAD_INPUT
     except (KeyboardInterrupt, click.Abort):
         _complain("interrupted")
@@ -104,14 +109,27 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = 0
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
+        if not place and error.errno in (*NO_SPACE, errno.EBADF, errno.EIO):
+            place = "output cannot be written: "
         _complain(f"{place}{error.strerror or error}")
         status = EXIT_MACHINE if error.errno in NO_SPACE else EXIT_BAD_INPUT
     sys.exit(status if isinstance(status, int) else 0)
 
 
 def _complain(text: str) -> None:
-    """Say on standard error what is wrong."""
-    click.echo(f"skinbayes: {message(text)}", err=True)
+    """One message on standard error, if that can be written."""
+    with suppress(OSError):
+        click.echo(f"skinbayes: {message(text)}", err=True)
+
+
+def _prepare_output() -> None:
+    """Have characters that standard output cannot take replaced (σ in many code pages), and refuse to work for nobody."""
+    if sys.stdout is None:
+        raise InputError("standard output is closed; expected one to write to, such as a file or /dev/null")
+    streams: tuple[Any, ...] = (sys.stdout, sys.stderr)
+    for stream in streams:
+        if getattr(stream, "errors", None) in ("strict", "surrogateescape"):
+            stream.reconfigure(errors="replace")
 
 
 @contextmanager

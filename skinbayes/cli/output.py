@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 from unicodedata import category
@@ -80,7 +81,9 @@ def _shortened(word: re.Match[str]) -> str:
 
 def print_json(document: Any) -> None:
     """Print one valid JSON document; infinities become the strings "inf" and "-inf", NaN becomes null."""
-    text = json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False)
+    encoding = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().replace("-", "")
+    # what a terminal of another code page cannot show, JSON can still say in ASCII
+    text = json.dumps(plain(document), indent=1, ensure_ascii=encoding != "utf8", allow_nan=False)
     click.echo("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
 
 

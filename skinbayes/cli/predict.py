@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_table, say
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, json_option, print_json, print_table, say
 from skinbayes.errors import InputError
 
 
@@ -30,20 +30,25 @@ def parse_settings(pairs: tuple[str, ...]) -> dict[str, str]:
 )
 @click.option("--conditions", metavar="FILE.csv", help="Rows to predict instead of the model's own.")
 @json_option
-def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json: bool) -> None:
-    """Evaluate the forward model at given parameters; free ones that are not set stand at their prior median."""
+def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json: bool) -> int:
+    """Evaluate the forward model at given parameters; free ones that are not set stand at their prior median.
+
+    A row without a prediction is empty (null in JSON), named on standard error with the reason, and makes the exit status 2.
+    """
     from skinbayes.problem import load_problem
 
     settings = parse_settings(pairs)
     problem = load_problem(model, settings=settings, conditions=conditions)
     theta = problem.prior_medians()
     prediction = problem.predict(theta)
-    sound = {name: _has_value(name, values) for name, values in prediction.items()}
-    bad = [name for name, values in sound.items() if not values.all()]
-    if bad:
-        row = int((~sound[bad[0]]).nonzero()[0][0]) + 1
-        why = " ".join(problem.explain(theta)) or "these inputs lie outside the forward model's range"
-        raise InputError(f"{model}: {bad[0]} has no finite value at row {row}: {why}")
+    missing = _without_value(problem, theta, prediction)
+    if len(missing) == problem.conditions.n_rows:
+        raise InputError(f"{model}: no row has a prediction; {missing[0]}")
+    if problem.free:
+        click.echo(
+            f"note: this is no result of a fit: {', '.join(problem.names)} at the median of the prior",
+            err=True,
+        )
     for note in problem.explain(theta):
         say(f"note: {note}", err=True)
     parameters: dict[str, Any] = dict(zip(problem.names, theta.tolist(), strict=True))
@@ -55,8 +60,31 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
         print_json({
             "model": problem.name, "parameters": parameters, "conditions": columns, "prediction": prediction,
         })  # fmt: skip
-        return
-    _print(problem, theta, columns, prediction)
+    else:
+        _print(problem, theta, columns, prediction)
+    for sentence in missing[:_MOST_SENTENCES]:
+        click.echo(f"skinbayes: {model}: {sentence}", err=True)
+    if len(missing) > _MOST_SENTENCES:
+        click.echo(f"skinbayes: {model}: {len(missing)} rows in all have no prediction", err=True)
+    return EXIT_BAD_INPUT if missing else EXIT_DONE
+
+
+_MOST_SENTENCES = 10
+
+
+def _without_value(problem: Any, theta: Any, prediction: dict[str, Any]) -> list[str]:
+    """A sentence for each row that lacks a prediction: which, and why."""
+    sound = {name: _has_value(name, values) for name, values in prediction.items()}
+    said: list[str] = []
+    for row in range(problem.conditions.n_rows):
+        lacking = [name for name, values in sound.items() if not values[row]]
+        if lacking:
+            # reasons take an evaluation each, and only the first ones are shown
+            why = problem.explain(theta, row) if len(said) < _MOST_SENTENCES else []
+            because = " ".join(why) or "these inputs lie outside the forward model's range"
+            others = f" (nor have {len(lacking) - 1} others)" if len(lacking) > 1 else ""
+            said.append(f"{lacking[0]} has no finite value at row {row + 1}{others}: {because}")
+    return said
 
 
 def _has_value(name: str, values: Any) -> Any:
@@ -73,6 +101,8 @@ def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[s
 
     def text(name: str, value: Any, written: str | None = None) -> str:
         quantity = QUANTITIES.get(name)
+        if not isinstance(value, str) and value != value:
+            return "–"
         return (
             str(value)
             if isinstance(value, str)

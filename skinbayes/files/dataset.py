@@ -229,7 +229,7 @@ def find_dataset(
     if relative_to is not None:
         path = relative_to / path
     try:
-        is_folder, is_file = path.is_dir(), path.is_file()
+        is_folder, is_file = path.is_dir(), path.exists()
     except OSError:
         is_folder = is_file = False
     if is_folder:

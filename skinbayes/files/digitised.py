@@ -11,8 +11,12 @@ from pathlib import Path
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.pixel_axes import PixelAxes
+from skinbayes.files.reading import open_file
 from skinbayes.files.table import quoted
 from skinbayes.vocabulary import suggestions
+
+LARGEST_EXPORT = 100_000_000
+"""Bytes of an export; an archive holds the picture, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +117,7 @@ def read_digitised(path: str | Path) -> DigitisedFile:
     """
     path = Path(path)
     try:
-        with path.open("rb") as stream:
+        with open_file(path, LARGEST_EXPORT, "a CSV, JSON or tar file of WebPlotDigitizer") as stream:
             start = stream.read(1024)
             stream.seek(0)
             digest = hashlib.file_digest(stream, "sha256").hexdigest()

@@ -14,11 +14,16 @@ from skinbayes.errors import InputError
 from skinbayes.files.digitised import DigitisedSet
 from skinbayes.files.digitised_schema import AxesBlock, PointBlock, ProjectBlock, SeriesBlock
 from skinbayes.files.pixel_axes import PixelAxes
+from skinbayes.files.reading import read_file
 from skinbayes.files.table import quoted
 
 LARGEST_PROJECT = 50_000_000
 """Bytes of a project file; the masks of automatic extraction can make it megabytes long."""
 
+MOST_SERIES = 1000
+"""Data sets, and axes, of a project; a figure has a handful."""
+
+_LISTS = ("axesColl", "datasetColl", "dataSeries")
 _AGREEMENT = 0.02  # pixels: stored and computed values are the same but for rounding
 _EXPECTED = "expected a project file of WebPlotDigitizer, format 3 or 4"
 
@@ -39,7 +44,11 @@ def read_project(path: Path, *, archive: bool) -> tuple[str, tuple[DigitisedSet,
     InputError
         naming the key, axes or data set that cannot be read
     """
-    text, where = _from_archive(path) if archive else (path.read_bytes(), str(path))
+    text, where = (
+        _from_archive(path)
+        if archive
+        else (read_file(path, LARGEST_PROJECT, "a project file of WebPlotDigitizer"), str(path))
+    )
     version, project = _parse(text, where)
     axes = {one.name: one for one in project.axesColl}
     sets: list[DigitisedSet] = []
@@ -78,8 +87,6 @@ def _from_archive(path: Path) -> tuple[bytes, str]:
 
 
 def _parse(data: bytes, where: str) -> tuple[str, ProjectBlock]:
-    if len(data) > LARGEST_PROJECT:
-        raise InputError(f"{where}: {len(data):,} bytes; expected at most {LARGEST_PROJECT:,}")
     try:
         content = json.loads(data.decode("utf-8-sig"))
     except json.JSONDecodeError as error:
@@ -97,6 +104,9 @@ def _parse(data: bytes, where: str) -> tuple[str, ProjectBlock]:
     known = (3,) if old else (4, 5)
     if not (isinstance(version, list) and version and version[0] in known):
         raise InputError(f"{where}: version: found {version!r:.40}; {_EXPECTED}")
+    for key in _LISTS:
+        if isinstance(body.get(key), list) and len(body[key]) > MOST_SERIES:
+            raise InputError(f"{where}: {key}: {len(body[key])} entries; expected at most {MOST_SERIES}")
     if old:
         body = _as_version_4(body)
     try:

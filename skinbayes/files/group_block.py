@@ -57,6 +57,10 @@ def read_groups(
             raise InputError(
                 f"{place}: found {column!r}.{suggestions(column, list(LABELS))} Expected a grouping column: {', '.join(LABELS)}"
             )
+        if not noise:
+            raise InputError(
+                f"{place}: a model without data has no groups; leave them out, or add [data] and [noise]"
+            )
         if len(noise) > 1:
             raise InputError(
                 f"{place}: group effects need a model of one observable; this one has {', '.join(noise)}"

@@ -16,7 +16,7 @@ from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, ModelBlock, RheologyBlock
 from skinbayes.files.noise_block import noise_parameter_names, read_noise
 from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_value
-from skinbayes.files.toml_text import explain, line_of, read_toml
+from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
 
 
@@ -110,12 +110,15 @@ def load_model(name: str | Path) -> ModelSpec:
         block = ModelBlock.model_validate(content)
     except ValidationError as error:
         raise InputError(explain(error, path, text, ModelBlock.model_fields)) from None
+    places = Places(path, text)
+    try:
+        _check_printable(content, places)
+        return _read(block, path, text, places)
+    except InputError as error:
+        raise InputError(places.located(str(error))) from None
 
-    def where(*keys: str) -> str:
-        line = line_of(text, keys)
-        return f"{path}{f', line {line}' if line else ''}: {'.'.join(keys)}"
 
-    _check_printable(content, where)
+def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
     parameters = _read_parameters(block.parameters, where)
     data, noise = block.data, block.noise
     families: dict[str, str] = {}
@@ -206,7 +209,9 @@ def _parameter_quantity(name: str, where: str) -> Quantity:
     if name in noise_parameter_names():
         raise InputError(f"{where}: '{name}' belongs into [noise]")
     if name not in QUANTITIES:
-        raise InputError(f"{where}: unknown parameter '{name}'.{suggestions(name, list(QUANTITIES))}")
+        raise InputError(
+            f"{where}: unknown parameter '{shortened(name)}'.{suggestions(name, list(QUANTITIES))}"
+        )
     return QUANTITIES[name]
 
 
@@ -224,7 +229,9 @@ def _read_parameters(block: dict[str, Any], where: Any) -> tuple[ParameterSpec, 
 
 def _read_grid(name: str, grid: GridBlock, where: str) -> FloatArray:
     if name not in QUANTITIES:
-        raise InputError(f"{where}: unknown condition '{name}'.{suggestions(name, list(QUANTITIES))}")
+        raise InputError(
+            f"{where}: unknown condition '{shortened(name)}'.{suggestions(name, list(QUANTITIES))}"
+        )
     raw = grid.values or grid.logspace or grid.linspace or []
     numbers = [parse_value(QUANTITIES[name], item, where) for item in raw]
     if grid.logspace is not None:

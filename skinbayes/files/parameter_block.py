@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
+
+import numpy as np
 
 from skinbayes.errors import InputError
 from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
@@ -70,22 +73,22 @@ def parse_parameter(
         entry = {"fixed": entry}
     if not isinstance(entry, dict):
         raise InputError(
-            f"{where}: found {entry!r}; expected a value with unit or a table such as {_example(unit)}"
+            f"{where}: found {entry!r:.60}; expected a value with unit or a table such as {_example(unit)}"
         )
     source = entry.get("source", "")
     if not isinstance(source, str):
-        raise InputError(f"{where}.source: found {source!r}; expected a sentence in quotes")
+        raise InputError(f"{where}.source: found {source!r:.60}; expected a sentence in quotes")
     keys = [key for key in entry if key != "source"]
     unknown = [key for key in keys if key != "fixed" and key not in FAMILIES]
     if unknown:
         known = ["fixed", *FAMILIES]
         raise InputError(
-            f"{where}: unknown key '{unknown[0]}'.{suggestions(unknown[0], known)} "
+            f"{where}: unknown key '{unknown[0]:.60}'.{suggestions(unknown[0], known)} "
             f"Expected one of {', '.join(known)}, and 'source'"
         )
     if len(keys) != 1:
         raise InputError(
-            f"{where}: found {len(keys)} priors or values ({', '.join(keys) or 'none'}); expected exactly one"
+            f"{where}: found {len(keys)} priors or values ({', '.join(keys) or 'none':.60}); expected exactly one"
         )
     key = keys[0]
     if key == "fixed":
@@ -110,8 +113,10 @@ def parse_levels(
     if not (isinstance(entry, dict) and "by" in entry):
         return [parse_parameter(quantity, entry, where(), unit)]
     column = entry["by"]
-    if column not in LABELS:
-        raise InputError(f"{where()}.by: found {column!r}; expected a grouping column: {', '.join(LABELS)}")
+    if not isinstance(column, str) or column not in LABELS:
+        raise InputError(
+            f"{where('by')}: found {column!r:.60}; expected a grouping column: {', '.join(LABELS)}"
+        )
     levels = {key: value for key, value in entry.items() if key != "by"}
     if not levels:
         raise InputError(f"{where()}: 'by = \"{column}\"' but no level is given")
@@ -134,6 +139,8 @@ def parse_value(quantity: Quantity, raw: Any, where: str, unit: str | None = Non
         raise InputError(
             f"{where}: found {_as_written(raw)}; expected a {quantity.name} {quantity.range_text()}"
         )
+    if value != 0 and isfinite(value) and not SMALLEST <= abs(value) <= LARGEST:
+        raise InputError(f"{where}: found {_as_written(raw)}; expected {_sizes(quantity, unit)}")
     return value
 
 
@@ -160,11 +167,36 @@ def _parse_prior(quantity: Quantity, family: str, raw: Any, where: str, unit: st
             prior = prior.truncated(quantity.lower, quantity.upper)
     except InputError as error:
         raise InputError(f"{where}: {error} ({quantity.name} must be {quantity.range_text()})") from None
+    _check_sizes(prior, quantity, where, unit)
     return prior
 
 
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Sizes of numbers in SI that anything about skin has, with a wide margin; products of powers of them stay numbers."""
+
+TAIL = 0.01
+"""Share of a prior that may lie beyond these sizes at either end."""
+
+
+def _check_sizes(prior: Prior, quantity: Quantity, where: str, unit: str) -> None:
+    """Refuse a prior of which a noticeable part is too large or too small to be computed with."""
+    with np.errstate(all="ignore"):
+        low, high = (float(prior.quantile(share)) for share in (TAIL, 1 - TAIL))
+    # one that goes through zero has any number of small values, and none of them matters
+    smallest = low if prior.support[0] >= 0 else max(-low, high)
+    if not (smallest >= SMALLEST and max(abs(low), abs(high)) <= LARGEST):
+        raise InputError(
+            f"{where}: 98 % of this prior lies between {low:.3g} and {high:.3g} in SI; expected {_sizes(quantity, unit)}"
+        )
+
+
+def _sizes(quantity: Quantity, unit: str) -> str:
+    in_unit = "" if unit == "1" else f" {unit}"
+    return f"a {quantity.name} between {SMALLEST:g} and {LARGEST:g}{in_unit} in size"
+
+
 def _as_written(raw: Any) -> str:
-    return ", ".join(str(item) for item in raw) if isinstance(raw, list) else str(raw)
+    return f"{', '.join(str(item) for item in raw) if isinstance(raw, list) else raw!s:.60}"
 
 
 def _example(unit: str) -> str:

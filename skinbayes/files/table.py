@@ -7,24 +7,30 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from skinbayes.errors import NEXT_PROBLEM, InputError
+from skinbayes.files.reading import open_file
 
 MAX_ROWS = 100_000
 """Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: with 64
 vectors every intermediate array of this many rows already takes 50 MB."""
 
+LARGEST_TABLE = 100_000_000
+"""Bytes of a table: `MAX_ROWS` long rows of numbers."""
+
+MOST_COLUMNS = 1000
+"""Columns of a table."""
+
+MOST_LINES = 2 * MAX_ROWS
+"""Lines of a table with its comments and empty lines."""
+
 _LONGEST_LINE = 100_000  # bytes; a table of quantities has lines of some hundred
 _DIGITS = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-
-LARGEST_FILE = 200_000_000
-"""Bytes; the longest table that is read has no more."""
 
 MOST_SHOWN = 10
 """Problems of a file that a message lists."""
@@ -125,6 +131,10 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | Non
             continue
         cells = _split(text, path, number)
         if header is None:
+            if len(cells) > MOST_COLUMNS:
+                raise InputError(
+                    f"{path}, line {number}: {len(cells)} columns; expected a table of at most {MOST_COLUMNS}"
+                )
             header, header_line = cells, number
             _check_header(text, comment, path, number)
             continue
@@ -184,14 +194,12 @@ def text_lines(path: Path) -> Iterator[tuple[int, str]]:
 
 def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
     try:
-        if path.exists() and not path.is_dir() and not path.is_file():
-            raise InputError(f"{path}: neither a file nor a folder; expected a CSV file")
-        with path.open("rb") as stream:
-            if os.fstat(stream.fileno()).st_size > LARGEST_FILE:
-                raise InputError(f"{path}: more than {LARGEST_FILE:,} bytes; expected a table")
+        with open_file(path, LARGEST_TABLE, "a CSV file") as stream:
             number = 0
             while raw := stream.readline(_LONGEST_LINE):
                 number += 1
+                if number > MOST_LINES:
+                    raise InputError(f"{path}: more than {MOST_LINES} lines; expected a table")
                 if b"\0" in raw:
                     raise InputError(
                         f"{path}, line {number}: found a zero byte (byte {raw.index(0) + 1} of the line); "

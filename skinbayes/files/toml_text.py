@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
 from skinbayes.errors import InputError
+from skinbayes.files.reading import read_file
 from skinbayes.vocabulary import suggestions
 
 if TYPE_CHECKING:
@@ -19,21 +20,25 @@ LARGEST_FILE = 1_000_000
 """Bytes; a model file or a provenance file is a page or two of text."""
 
 
+_DEEPEST = 20
+"""Tables and lists in one another, and parts of a dotted key; a model file has four."""
+
+_LARGEST_INTEGER = 2**63
+"""TOML promises no larger ones, and powers of larger ones are no numbers."""
+
+_TOKEN = re.compile(
+    r'"""(?:\\[\s\S]|(?!""")[^\\])*+"""|"(?:\\.|[^"\\\n])*+"'
+    r"|\'\'\'(?:(?!\'\'\')[\s\S])*+\'\'\'|\'[^\'\n]*+\'"
+    r"|#[^\n]*+|[\[\]{}.=,\n]"
+)
+
+
 def read_text(path: Path) -> str:
     """Return the text of ``path``; :class:`InputError` if it is missing, empty, too large, binary or not UTF-8."""
-    try:
-        data = path.read_bytes()
-    except IsADirectoryError:
-        raise InputError(f"{path}: this is a folder; a TOML file was expected") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    data = read_file(path, LARGEST_FILE, "a TOML file")
     if not data.strip():
         raise InputError(
             f"{path}: the file is empty; a TOML file with a title and a forward model was expected"
-        )
-    if len(data) > LARGEST_FILE:
-        raise InputError(
-            f"{path}: {len(data):,} bytes; a TOML file of at most {LARGEST_FILE:,} bytes was expected"
         )
     if b"\0" in data:
         raise InputError(f"{path}: binary data at byte {data.index(0)}; a UTF-8 text file was expected")
@@ -50,12 +55,13 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
     Raises
     ------
     InputError
-        The file cannot be read, or is not valid TOML (a key given twice, a missing quote); names the line.
+        The file cannot be read, or is not valid TOML (a key given twice, a missing quote), is nested deeper than any model is,
+        or has integers of more than 64 bits; names the line.
     """
     text = read_text(path)
+    _refuse_depth(path, text)  # the parser takes time that grows with the square of the depth
     try:
         content = tomllib.loads(text.replace("\r\n", "\n"))
-        return (content if text.isascii() else _composed(content)), text
     except tomllib.TOMLDecodeError as error:
         message = str(error)
         found = re.search(r"\(at line (\d+), column (\d+)\)", message)
@@ -63,9 +69,75 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
         if "overwrite" in reason or "declare" in reason:
             reason += " – a key or table stands here a second time"
         at = f", line {found[1]}, column {found[2]}" if found else ""
-        raise InputError(f"{path}{at}: not valid TOML: {reason}") from None
-    except RecursionError:
-        raise InputError(f"{path}: nested too deeply to be a model file") from None
+        raise InputError(f"{path}{at}: not valid TOML: {reason:.200}") from None
+    except ValueError as error:  # an integer of thousands of digits, a date that no calendar has
+        raise InputError(f"{path}: not valid TOML: {str(error).partition(';')[0]:.200}") from None
+    _refuse_large_integers(content, Places(path, text))
+    return (content if text.isascii() else _composed(content)), text
+
+
+def _refuse_depth(path: Path, text: str) -> None:
+    depth, parts, line = 0, 0, 1
+    for found in _TOKEN.finditer(text):
+        token = found[0]
+        match token[0]:
+            case "[" | "{":
+                depth += 1
+            case "]" | "}":
+                depth -= 1
+            case ".":
+                parts += 1
+            case "\n":
+                line += 1
+            case _:
+                line += token.count("\n")
+        if token in ("[", "{", "=", ",", "\n"):
+            parts = 0
+        if depth > _DEEPEST or parts > _DEEPEST:
+            raise InputError(f"{path}, line {line}: nested too deeply to be a model file")
+
+
+def _refuse_large_integers(item: Any, places: Places, keys: tuple[str, ...] = ()) -> None:
+    if isinstance(item, dict):
+        for key, value in item.items():
+            _refuse_large_integers(value, places, (*keys, key))
+    elif isinstance(item, list):
+        for value in item:
+            _refuse_large_integers(value, places, keys)
+    elif isinstance(item, int) and not -_LARGEST_INTEGER <= item < _LARGEST_INTEGER:
+        place = places.located(places(*keys))
+        raise InputError(f"{place}: an integer of {item.bit_length()} bits; expected a number such as 1e20")
+
+
+class Places:
+    """Where things stand in a file, for messages: ``FILE: table.key``, and with the line once a message is made of it.
+
+    Finding a line takes a search of the whole file, so it is done for the one message that is shown.
+    """
+
+    def __init__(self, path: Path, text: str) -> None:
+        self.path, self.text = path, text
+        self._known: dict[str, tuple[str, ...]] = {}
+
+    def __call__(self, *keys: str) -> str:
+        """The place of a key."""
+        place = f"{self.path}: {'.'.join(shortened(key) for key in keys)}"
+        self._known[place] = keys
+        return place
+
+    def located(self, message: str) -> str:
+        """The message with the line of the place that it begins with, if that is known and the line is found."""
+        start = f"{self.path}: "
+        if not message.startswith(start):
+            return message
+        best = max((place for place in self._known if message.startswith(place)), key=len, default=None)
+        line = best and line_of(self.text, self._known[best])
+        return f"{self.path}, line {line}: {message.removeprefix(start)}" if line else message
+
+
+def shortened(text: str) -> str:
+    """Text of a file inside a message: not longer than a line."""
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _composed(item: Any, key: str = "") -> Any:
@@ -121,7 +193,7 @@ def explain(error: ValidationError, path: Path, text: str, known: Collection[str
     first = problems[0]
     keys = [str(part) for part in first["loc"] if not isinstance(part, int)]
     line = line_of(text, keys) if keys and first["type"] != "missing" else None
-    place = f"{path}{f', line {line}' if line else ''}: {'.'.join(keys)}".rstrip(": ")
+    place = f"{path}{f', line {line}' if line else ''}: {'.'.join(map(shortened, keys))}".rstrip(": ")
     if first["type"] == "extra_forbidden":
         said = f"unknown key.{suggestions(keys[-1], list(known) if len(keys) == 1 else [])}"
     elif first["type"] == "missing":

@@ -39,5 +39,7 @@ def forward_model(name: str, where: str = "forward") -> ForwardModel:
     """Return the forward model called ``name``; :class:`InputError` naming all of them if there is none."""
     models = forward_models()
     if name not in models:
-        raise InputError(f"{where}: no forward model '{name}'; expected one of {', '.join(sorted(models))}")
+        raise InputError(
+            f"{where}: no forward model '{name:.60}'; expected one of {', '.join(sorted(models))}"
+        )
     return models[name]

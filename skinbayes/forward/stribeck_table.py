@@ -17,7 +17,7 @@ from skinbayes.forward.stribeck_direct import (
     limit_of,
     speed_viscosity_product_of,
 )
-from skinbayes.forward.table_cache import Stored, cached
+from skinbayes.forward.table_cache import Stored, Unfinished, cached
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
     LARGE_STRAIN,
@@ -139,10 +139,10 @@ def prepare(
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction", "strain_limit")
     )
 
-    def build() -> Stored:
+    def build(unfinished: Unfinished) -> Stored:
         table = build_film_table(
-            held, spectrum, layer, bulk, gamma, processes=cores, progress=progress, largest_strain=strain
-        )
+            held, spectrum, layer, bulk, gamma, processes=cores, progress=progress, largest_strain=strain, kept=unfinished
+        )  # fmt: skip
         return table.to_arrays()
 
     stored = cached(

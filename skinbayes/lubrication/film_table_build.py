@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
-from multiprocessing import get_context
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +15,7 @@ from skinbayes.lubrication._uniform_spline import spline_coefficients
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_axes, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_solver import Kept, Sweeps
 from skinbayes.lubrication.film_sweeps import Ball, Material, Progress, Surface, ball_at
 from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import tabulated_friction
@@ -52,6 +50,7 @@ def build_film_table(
     processes: int = 1,
     progress: Progress | None = None,
     largest_strain: float = LARGEST_STRAIN,
+    kept: Kept | None = None,
 ) -> FilmTable:
     """Table of the films under a ball on rough layered skin for parameters within ranges (Sect. 6 of the paper).
 
@@ -68,6 +67,7 @@ def build_film_table(
     processes : how many solve at once, dimensionless
     progress : told the number of sweeps that are done and of all
     largest_strain : b/Rc, dimensionless, that the table has to reach
+    kept : where solutions are kept until the table is done; a build that finds some there goes on from them, to the same table
 
     Returns
     -------
@@ -106,21 +106,18 @@ def build_film_table(
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
     sweeps = len(places) + len(coarse_places) + checked
-    say = _Counter(sweeps, progress)
     materials = _Materials(surface)
 
-    with _Solver(processes) as solve:
+    with Sweeps(processes, sweeps, progress, kept) as solve:
         balls = (materials.ball(axes.representative(place)) for place in coarse_places)
-        anchors = np.array([say(found) for found in solve(Ball.anchors, balls)])
+        anchors = solve("anchors", Ball.anchors, balls)
         anchor_terms = _pad(chebyshev_coefficients(anchors.reshape(*coarse, 2)), axes.counts)
         at_nodes = _values_at(anchor_terms, places)
 
         grid = np.linspace(SLOWEST, FASTEST, speeds)
         numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
         balls = (materials.ball(axes.representative(place)) for place in places)
-        outputs = np.array(
-            [say(found) for found in solve(partial(_outputs, nodes=nodes), zip(balls, numbers, strict=True))]
-        )
+        outputs = solve("outputs", partial(_outputs, nodes=nodes), zip(balls, numbers, strict=True))
         smooth = smooth_films()
         for output, reference in zip((0, 2, 3, 4), smooth(numbers, range(4)), strict=True):
             outputs[:, output] -= reference
@@ -138,7 +135,7 @@ def build_film_table(
             checked,
         )
         return (
-            replace(table, held_out=_check(table, materials, checked, say, solve, largest_strain))
+            replace(table, held_out=_check(table, materials, checked, solve, largest_strain))
             if checked
             else table
         )
@@ -195,33 +192,6 @@ class _Materials:
         return ball_at(self.surface, self._known[key], log_parameters)
 
 
-class _Counter:
-    """Passes results on and says how many there were."""
-
-    def __init__(self, total: int, progress: Progress | None) -> None:
-        self.done, self.total, self.progress = 0, total, progress
-
-    def __call__(self, found: Any) -> Any:
-        self.done += 1
-        if self.progress is not None:
-            self.progress(self.done, self.total)
-        return found
-
-
-class _Solver:
-    """Apply a function to many arguments, here or in other processes, in order."""
-
-    def __init__(self, processes: int) -> None:
-        self.pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn")) if processes > 1 else None
-
-    def __enter__(self) -> Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]:
-        return map if self.pool is None else partial(self.pool.map, chunksize=4)
-
-    def __exit__(self, *what: object) -> None:
-        if self.pool is not None:
-            self.pool.shutdown(cancel_futures=True)
-
-
 def _outputs(task: tuple[Ball, FloatArray], nodes: int) -> FloatArray:
     ball, log_number = task
     return ball.outputs(log_number, nodes)
@@ -231,8 +201,7 @@ def _check(
     table: FilmTable,
     materials: _Materials,
     count: int,
-    say: _Counter,
-    solve: Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]],
+    solve: Sweeps,
     largest_strain: float,
 ) -> FloatArray:
     """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
@@ -251,13 +220,12 @@ def _check(
     slowest = np.minimum((films.anchor + films.unit * (SLOWEST - 0.2))[:, 0], thickest)
     number = rng.uniform(slowest, thickest)
     balls = [materials.ball(point) for point in drawn]
-    balls = [materials.ball(point) for point in drawn]
     # σ_f for which μ of small contacts is about 1 at rest
     shear_stress = np.array(
         [np.sqrt(np.pi * materials.surface.area_correction * ball.variance) / 2 for ball in balls]
     )
-    found = solve(partial(_outputs, nodes=_CHECK_NODES), zip(balls, number[:, None], strict=True))
-    outputs = np.array([say(output)[:, 0] for output in found])
+    found = solve("check", partial(_outputs, nodes=_CHECK_NODES), zip(balls, number[:, None], strict=True))
+    outputs = found[..., 0]
     slope = np.exp(scales.strain)
     direct = (
         shear_stress * np.exp(outputs[:, 1]) / [ball.stiffness for ball in balls]

@@ -47,7 +47,7 @@ class LiquidRows:
         """
         position = (log_rate - self.lowest) * self.steps_per_unit
         held = np.minimum(np.maximum(position, 0.0), float(_CELLS))
-        cell = held.astype(np.intp)
+        cell = np.where(np.isnan(held), 0.0, held).astype(np.intp)  # the place in it stays nan
         np.minimum(cell, _CELLS - 1, out=cell)
         place = held - cell
         cell += self.start

@@ -27,8 +27,3 @@ def as_batch(theta: ArrayLike, names: Sequence[str]) -> tuple[FloatArray, bool]:
 def unbatch(values: FloatArray, single: bool) -> FloatArray:
     """The only row of a batch if a single vector was given, else the batch."""
     return values[0] if single else values
-
-
-def impossible(values: FloatArray) -> FloatArray:
-    """Log-densities with −inf for NaN and +inf."""
-    return np.where(np.isnan(values) | (values == np.inf), -np.inf, values)

@@ -14,6 +14,7 @@ from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
+from skinbayes.problem.failures import explained
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -81,7 +82,8 @@ def check_problem(problem: Problem, seed: int = 1) -> CheckReport:
     predictions, usable = _predictions(problem, draws)
     identifiability = None
     if problem.observed is not None and problem.free:
-        identifiability = _identify(problem, draws[usable])
+        with explained(problem.spec.path, "what the data can tell cannot be computed"):
+            identifiability = _identify(problem, draws[usable])
     return CheckReport(problem.name, _setup(problem), _priors(problem), predictions, identifiability)
 
 
@@ -200,7 +202,13 @@ def _whitening(
     if problem.groups is None:
         return lambda values: values, problem.noise_width(centre) * scale
     covariance = problem.scatter_covariance(centre) * np.outer(scale, scale)
-    inverse = np.linalg.inv(np.linalg.cholesky(covariance))
+    try:
+        inverse = np.linalg.inv(np.linalg.cholesky(covariance))
+    except np.linalg.LinAlgError:
+        raise InputError(
+            f"{problem.spec.path}: noise: at the prior medians the noise is so small beside the effects of groups "
+            f"({problem.noise_width(centre).min():.2g}) that data of one group could not differ; expected a larger noise_scale"
+        ) from None
     return lambda values: values @ inverse.T, np.ones(len(scale))
 
 

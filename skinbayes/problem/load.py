@@ -15,6 +15,7 @@ from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, Tables, forward_model
 from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
 from skinbayes.problem.covariates import check_covariates
+from skinbayes.problem.failures import explained
 from skinbayes.problem.inputs import Conditions, plan_inputs
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.problem import Problem
@@ -140,8 +141,11 @@ def load_problem(
     )
     if forward.validate is not None:
         try:
-            forward.validate(problem.inputs(problem.prior_medians()[np.newaxis]), tables)
+            with explained(spec.path, "at the prior medians the forward model cannot be evaluated"):
+                forward.validate(problem.inputs(problem.prior_medians()[np.newaxis]), tables)
         except InputError as error:
+            if str(error).startswith(f"{spec.path}: "):
+                raise
             raise InputError(f"{spec.path}: {'at the prior medians ' if free else ''}{error}") from None
     return problem
 

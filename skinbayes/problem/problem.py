@@ -18,8 +18,9 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
 from skinbayes.forward.base import Progress
-from skinbayes.problem.batches import as_batch, impossible, unbatch
+from skinbayes.problem.batches import as_batch, unbatch
 from skinbayes.problem.covariates import apply_covariates, factor_key
+from skinbayes.problem.failures import explained, impossible, without_underflow
 from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
@@ -32,6 +33,8 @@ from skinbayes.statistics.groups import CrossedGroups
 if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
     from skinbayes.problem.target import PosteriorTarget
+
+_FAILED = "the forward model cannot be evaluated"
 
 
 @dataclass(frozen=True)
@@ -142,7 +145,8 @@ class Problem:
             return self.model
         prepared = self.forward
         if prepared.prepare is not None and self.observations and self.free:
-            prepared = prepared.prepare(input_ranges(self), self.tables, progress, cores)
+            with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
+                prepared = prepared.prepare(input_ranges(self), self.tables, progress, cores)
         self.__dict__["model"] = prepared
         return prepared
 
@@ -227,7 +231,7 @@ class Problem:
         predicted = self.evaluate(self.inputs(batch, conditions), tables)
         shape = (batch.shape[0], rows.n_rows)
         return {
-            name: unbatch(np.array(np.broadcast_to(value, shape)), single)
+            name: unbatch(without_underflow(np.broadcast_to(value, shape)), single)
             for name, value in predicted.items()
         }
 
@@ -247,8 +251,9 @@ class Problem:
         """
         batch, _ = self._batch(theta)
         inputs = self.inputs(batch)
-        with np.errstate(all="ignore"):
-            quantities = dict(self.model.derived(inputs, self.tables))
+        model = self.model
+        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
+            quantities = dict(model.derived(inputs, self.tables))
             known = inputs | quantities
             for name, block in self.spec.derived.items():
                 product = np.ones((1, 1))
@@ -258,22 +263,26 @@ class Problem:
                 if not chosen.any():  # data of the user's own without such rows
                     continue
                 quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
-        return {name: np.array(np.atleast_2d(value)) for name, value in quantities.items()}
+        return {name: without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
 
-    def explain(self, theta: ArrayLike) -> list[str]:
-        """Sentences on why predictions at ``theta`` are missing or doubtful, empty if nothing is to be said."""
+    def explain(self, theta: ArrayLike, row: int | None = None) -> list[str]:
+        """Sentences on why predictions at ``theta`` are missing or doubtful, at all rows or one; empty if there is nothing."""
         batch, _ = self._batch(theta)
         if self.forward.explain is None:
             return []
-        with np.errstate(all="ignore"):
-            return self.forward.explain(self.inputs(batch), self.tables)
+        inputs, tables = self.inputs(batch), self.tables
+        if row is not None:
+            inputs = {n: v[:, [row]] if v.shape[1] > 1 else v for n, v in inputs.items()}
+            tables = tables.at_row(row)
+        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
+            return self.forward.explain(inputs, tables)
 
     def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
         """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
         batch, _ = self._batch(theta)
         if self.model.flags is None:
             return {}
-        with np.errstate(all="ignore"):
+        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
             found = self.model.flags(self.inputs(batch), self.tables)
         shape = (len(batch), self.conditions.n_rows)
         return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
@@ -372,8 +381,9 @@ class Problem:
         self, inputs: Mapping[str, FloatArray], tables: Tables | None = None
     ) -> dict[str, FloatArray]:
         """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them."""
-        with np.errstate(all="ignore"):
-            predicted = dict(self.model.evaluate(inputs, self.tables if tables is None else tables))
+        model = self.model
+        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
+            predicted = dict(model.evaluate(inputs, self.tables if tables is None else tables))
         for name in self.spec.observables:
             for key in ("discrepancy_factor", f"discrepancy_factor[{name}]", factor_key(name)):
                 if key in inputs:

@@ -12,7 +12,7 @@ from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
 from skinbayes.problem.rheology import REPLACED
 from skinbayes.units import split_header
-from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, suggestions
 
 
 @dataclass(frozen=True)
@@ -131,6 +131,11 @@ def _labels(spec: ModelSpec) -> dict[str, str]:
     for scale in spec.groups:
         reasons.setdefault(str(scale.level), []).append("rows with the same one share an effect")
     for column, kept in spec.rows.items():
+        if column not in LABELS:
+            raise InputError(
+                f"{spec.path}: data.rows: no label column is called '{column}'.{suggestions(column, list(LABELS))} "
+                f"Expected {', '.join(LABELS)}"
+            )
         reasons.setdefault(column, []).append(f"the model takes the rows with {', '.join(kept)}")
     if spec.rheology_by is not None:
         reasons.setdefault(spec.rheology_by, []).append("each has its flow curve")

@@ -50,7 +50,8 @@ def roots_at_gaps(
     start = np.log(pressure)
     strength = pull[:, None] / gap / pressure[:, None]
     end = start[:, None] + np.log1p(strength)
-    rungs = max(2, int(np.ceil(np.nanmax(end - start[:, None], initial=0.0) / _RUNG)) + 1)
+    span = end - start[:, None]
+    rungs = max(2, int(np.ceil(np.max(span, initial=0.0, where=np.isfinite(span)) / _RUNG)) + 1)
 
     def climb(x: FloatArray) -> FloatArray:
         area = filled_at(source, x, gap)[0].area
