@@ -18,10 +18,12 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
 from skinbayes.forward.base import Progress
+from skinbayes.problem.alike import DistinctRows, distinct_rows
 from skinbayes.problem.covariates import apply_covariates, factor_key
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.observations import Observation
+from skinbayes.problem.pieces import named_in_pieces
 from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
@@ -30,6 +32,10 @@ from skinbayes.statistics.groups import CrossedGroups
 if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
     from skinbayes.problem.target import PosteriorTarget
+
+
+MANY_ROWS = 1_000
+"""With so many rows a likelihood takes far longer than a step of the sampler."""
 
 
 @dataclass(frozen=True)
@@ -214,12 +220,16 @@ class Problem:
         if conditions is not None:
             curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, conditions, self.spec.path)
             tables = replace(tables, flow_curves=curves)
-        predicted = self.evaluate(self.inputs(batch, conditions), tables)
-        shape = (batch.shape[0], rows.n_rows)
-        return {
-            name: _unbatch(np.array(np.broadcast_to(value, shape)), single)
-            for name, value in predicted.items()
-        }
+        plan = self._plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
+        alike = self.alike if conditions is None else distinct_rows(plan, rows, tables)
+
+        def piece(theta: FloatArray) -> dict[str, FloatArray]:
+            predicted = self.evaluate(self.inputs(theta, conditions), tables, alike)
+            shape = (len(theta), rows.n_rows)
+            return {name: np.array(np.broadcast_to(value, shape)) for name, value in predicted.items()}
+
+        predicted = named_in_pieces(piece, batch, rows.n_rows)
+        return {name: _unbatch(value, single) for name, value in predicted.items()}
 
     def predict_data(self, theta: ArrayLike) -> FloatArray:
         """Predictions of all data, one observable after the other, shape ``(M,)`` or ``(B, M)``, SI."""
@@ -236,6 +246,14 @@ class Problem:
             ``(B, N)``, or ``(B, n)`` for a product that is defined for n of the rows.
         """
         batch, _ = self._batch(theta)
+        found = named_in_pieces(self._derived, batch, self.conditions.n_rows)
+        for name in self.spec.derived:
+            # the same in all rows it is defined for, such as those of one state of skin
+            if name in found and (found[name] == found[name][:, :1]).all():
+                found[name] = np.ascontiguousarray(found[name][:, :1])
+        return found
+
+    def _derived(self, batch: FloatArray) -> dict[str, FloatArray]:
         inputs = self.inputs(batch)
         with np.errstate(all="ignore"):
             quantities = dict(self.model.derived(inputs, self.tables))
@@ -261,12 +279,17 @@ class Problem:
     def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
         """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
         batch, _ = self._batch(theta)
-        if self.model.flags is None:
+        raised = self.model.flags
+        if raised is None:
             return {}
-        with np.errstate(all="ignore"):
-            found = self.model.flags(self.inputs(batch), self.tables)
-        shape = (len(batch), self.conditions.n_rows)
-        return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
+
+        def piece(theta: FloatArray) -> dict[str, NDArray[np.bool_]]:
+            with np.errstate(all="ignore"):
+                found = raised(self.inputs(theta), self.tables)
+            shape = (len(theta), self.conditions.n_rows)
+            return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
+
+        return named_in_pieces(piece, batch, self.conditions.n_rows)
 
     def simulate(
         self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
@@ -349,21 +372,54 @@ class Problem:
         batch, _ = self._batch(theta)
         return self._likelihood.width(batch)[0]
 
-    def scatter_covariance(self, theta: FloatArray) -> FloatArray:
-        """Covariance of what scatters, group effects included, at one parameter vector ``(D,)``, shape ``(M, M)``."""
-        return self._likelihood.covariance(theta)
+    def independent_scatter(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
+        """Changes of what scatters as numbers that scatter independently, with width 1.
+
+        Parameters
+        ----------
+        theta : one parameter vector ``(D,)``, SI
+        changes : of the data, on the scale on which they scatter, shape ``(B, M)``
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, M + G)`` with G effects of groups: the inner products are those of the changes with the inverse of the
+            covariance of the data between them.
+        """
+        return self._likelihood.independent(theta, changes)
 
     @property
     def noise_is_logarithmic(self) -> NDArray[np.bool_]:
         """Whether it is ln of a datum that scatters, for each datum, shape ``(M,)``."""
         return np.repeat([o.noise.logarithmic for o in self.observations], self.conditions.n_rows)
 
+    @cached_property
+    def alike(self) -> DistinctRows | None:
+        """Rows of the data that the forward model need not tell apart; None if all differ."""
+        return distinct_rows(self._plan, self.conditions, self.tables, self.input_spread)
+
+    @property
+    def costly(self) -> bool:
+        """Whether a likelihood takes so long that fewer walkers are better: a costly forward model, or very many rows."""
+        return self.forward.costly or self.conditions.n_rows >= MANY_ROWS
+
     def evaluate(
-        self, inputs: Mapping[str, FloatArray], tables: Tables | None = None
+        self,
+        inputs: Mapping[str, FloatArray],
+        tables: Tables | None = None,
+        alike: DistinctRows | None = None,
     ) -> dict[str, FloatArray]:
-        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them."""
+        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them.
+
+        Rows that are ``alike`` are evaluated once.
+        """
+        tables = self.tables if tables is None else tables
         with np.errstate(all="ignore"):
-            predicted = dict(self.model.evaluate(inputs, self.tables if tables is None else tables))
+            if alike is None:
+                predicted = dict(self.model.evaluate(inputs, tables))
+            else:
+                distinct = self.model.evaluate(alike.of_inputs(inputs), alike.of_tables(tables))
+                predicted = {name: alike.at_rows(values) for name, values in distinct.items()}
         for name in self.spec.observables:
             for key in ("discrepancy_factor", f"discrepancy_factor[{name}]", factor_key(name)):
                 if key in inputs:
