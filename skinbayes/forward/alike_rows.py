@@ -101,7 +101,8 @@ def on_distinct(inputs: Inputs, function: Callable[[Inputs], FloatArray]) -> Flo
     if not differing:
         return function(inputs)
     count = differing[0].shape[-1]
-    _, first, place = np.unique(_kinds(differing, count), return_index=True, return_inverse=True)
+    place = _kinds(differing, count)
+    first = _first_of_each(place)
     if len(first) == count:
         return function(inputs)
     few = {
@@ -109,7 +110,7 @@ def on_distinct(inputs: Inputs, function: Callable[[Inputs], FloatArray]) -> Flo
         for name, table in tables.items()
     }
     values = function(few)
-    return np.take(values, place.reshape(-1), axis=-1) if np.shape(values)[-1:] == (len(first),) else values
+    return np.take(values, place, axis=-1) if np.shape(values)[-1:] == (len(first),) else values
 
 
 def _common(
@@ -136,12 +137,14 @@ def _groups(tables: list[FloatArray], count: int) -> list[NDArray[np.intp]]:
 
 
 def _kinds(tables: list[FloatArray], count: int) -> NDArray[np.intp]:
-    """A number for each row, the same for rows of equal columns in all tables, each of shape ``(B, N)``."""
+    """A number for each row, 0, 1, …, the same for rows of equal columns in all tables, each of shape ``(B, N)``."""
     found = np.zeros(count, dtype=np.intp)
     for table in tables:
-        # rows that differ mostly do so in the first vector: one column of it is sorted, the others are compared
+        if not len(table):
+            continue
+        # rows that differ mostly do so in the first vector: its numbers are sorted, those of the others compared
         found = _refined(found, table[0], count)
-        shared = table[:, np.unique(found, return_index=True)[1]][:, found]
+        shared = table[:, _first_of_each(found)][:, found]
         for vector in np.flatnonzero((shared != table).any(axis=1)):
             found = _refined(found, table[vector], count)
     return found
@@ -150,5 +153,14 @@ def _kinds(tables: list[FloatArray], count: int) -> NDArray[np.intp]:
 def _refined(kinds: NDArray[np.intp], values: FloatArray, count: int) -> NDArray[np.intp]:
     """Kinds of rows told apart by one more number each."""
     _, place = np.unique(values, return_inverse=True)
-    _, found = np.unique(kinds * count + place.reshape(-1), return_inverse=True)
+    found = place.reshape(-1)
+    if kinds.any():
+        _, found = np.unique(kinds * count + found, return_inverse=True)
     return np.asarray(found.reshape(-1), dtype=np.intp)
+
+
+def _first_of_each(kinds: NDArray[np.intp]) -> NDArray[np.intp]:
+    """One row of each kind."""
+    first = np.empty(int(kinds.max()) + 1, dtype=np.intp)
+    first[kinds] = np.arange(len(kinds))
+    return first
