@@ -76,6 +76,13 @@ class PriorPredictive:
             )
         return said
 
+    def most_surprising(self, count: int) -> tuple[PredictedRow, ...]:
+        """The data, or the ``count`` of them furthest out in what the priors predict, in their order."""
+        far = sorted(
+            range(len(self.rows)), key=lambda i: min(self.rows[i].share_below, 1 - self.rows[i].share_below)
+        )
+        return tuple(self.rows[i] for i in sorted(far[:count]))
+
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
         return asdict(self) | {"sentences": self.sentences()}

@@ -19,10 +19,22 @@ from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise import noise_family
 from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 
+MOST_ROWS = 10_000
+"""Rows that a problem may have: so many were run, in less than a gigabyte (benchmarks/rows.py)."""
+
+
+def _check_count(path: object, count: int) -> None:
+    if count > MOST_ROWS:
+        raise InputError(
+            f"{path}: {count} rows; expected at most {MOST_ROWS}, with which the time and memory of a fit were measured: average "
+            "neighbouring rows, or take a part of them"
+        )
+
 
 def user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Conditions:
     """Rows of a CSV of the user's; :class:`InputError` if none of its columns is an input of the forward model."""
     dataset = load_dataset(path)
+    _check_count(path, dataset.n_rows)
     rows = _columns(dataset, set(forward.input_names()), covariate_columns(spec.covariates, dataset))
     if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
         raise InputError(
@@ -55,6 +67,7 @@ def data_rows(
 
     Raises :class:`InputError` for observables that are not predicted, not in the data, or impossible for their noise.
     """
+    _check_count(dataset.path, dataset.n_rows)
     covariates = covariate_columns(spec.covariates, dataset)
     rows = _columns(dataset, set(forward.input_names()) - taken, covariates)
     return rows, tuple(_observation(spec, forward, dataset, name) for name in spec.observables)
