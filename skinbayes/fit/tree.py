@@ -294,6 +294,8 @@ def _dataset(
     chains = {"chain": np.arange(draws.shape[0]), "draw": step * np.arange(draws.shape[1])}
     dataset = xarray.Dataset(variables, coords={**chains, **(coordinates or {})})
     _add_units(dataset)
+    if step > 1:
+        dataset.attrs["kept"] = f"one draw in {step}"
     return dataset
 
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 PIECE = 2**14
 """Predictions made at a time (vectors times rows): a temporary array of them, 128 kB, stays in the cache."""
@@ -47,16 +51,16 @@ def in_pieces(
 
 
 def named_in_pieces(
-    function: Callable[[FloatArray], Mapping[str, FloatArray]],
+    function: Callable[[FloatArray], Mapping[str, NDArray[Scalar]]],
     theta: FloatArray,
     size: int,
     piece: int = PIECE,
-) -> dict[str, FloatArray]:
+) -> dict[str, NDArray[Scalar]]:
     """The same for a function that gives several named quantities, each ``(B, ·)``, or ``(1, ·)`` where vectors agree."""
     step = max(1, piece // max(size, 1))
     if len(theta) <= step:
         return dict(function(theta))
-    found: dict[str, FloatArray] = {}
+    found: dict[str, NDArray[Scalar]] = {}
     for start in range(0, len(theta), step):
         for name, part in function(theta[start : start + step]).items():
             if not start:
