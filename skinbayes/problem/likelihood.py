@@ -121,8 +121,8 @@ class Likelihood:
     def _size(self) -> int:
         """Numbers that one vector needs: its data, and the matrix of the levels of groups."""
         groups = self.problem.groups
-        levels = 0 if groups is None else groups.n_effects
-        return len(self._observations) * self.problem.conditions.n_rows + levels**2
+        matrices = 0 if groups is None else groups.matrix_size
+        return len(self._observations) * self.problem.conditions.n_rows + matrices
 
     def _total(self, theta: FloatArray) -> FloatArray:
         groups = self.problem.groups

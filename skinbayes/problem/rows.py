@@ -23,6 +23,10 @@ MOST_ROWS = 10_000
 """Rows that a problem may have: so many were run, in less than a gigabyte (benchmarks/rows.py)."""
 
 
+MOST_LEVELS = 1_000
+"""Levels of a column whose rows may share an effect: so many were run."""
+
+
 def _check_count(path: object, count: int) -> None:
     if count > MOST_ROWS:
         raise InputError(
@@ -146,6 +150,11 @@ def crossed_groups(spec: ModelSpec, rows: Conditions) -> CrossedGroups | None:
             raise InputError(f"{spec.path}: groups.{column}: the data have no column '{column}'")
         labels[column] = rows.labels[column]
         levels = len(set(labels[column].tolist()))
+        if levels > MOST_LEVELS:
+            raise InputError(
+                f"{spec.path}: groups.{column}: the data have {levels} of them; expected at most {MOST_LEVELS}, with which time "
+                "and memory were measured"
+            )
         if levels < 2:
             raise InputError(
                 f"{spec.path}: groups.{column}: all rows have the same {column}; effects need at least two"
