@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,14 +18,13 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
 from skinbayes.forward.base import Progress
+from skinbayes.problem import quantities
 from skinbayes.problem.alike import DistinctRows, distinct_rows
 from skinbayes.problem.covariates import apply_covariates, factor_key
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.observations import Observation
-from skinbayes.problem.pieces import named_in_pieces
 from skinbayes.problem.ranges import input_ranges
-from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.groups import CrossedGroups
 
@@ -215,20 +214,7 @@ class Problem:
             factor and covariates that act on them. Effects of groups are those of the median group, 0.
         """
         batch, single = self._batch(theta)
-        rows = conditions or self.conditions
-        tables = self.tables
-        if conditions is not None:
-            curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, conditions, self.spec.path)
-            tables = replace(tables, flow_curves=curves)
-        plan = self._plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
-        alike = self.alike if conditions is None else distinct_rows(plan, rows, tables)
-
-        def piece(theta: FloatArray) -> dict[str, FloatArray]:
-            predicted = self.evaluate(self.inputs(theta, conditions), tables, alike)
-            shape = (len(theta), rows.n_rows)
-            return {name: np.array(np.broadcast_to(value, shape)) for name, value in predicted.items()}
-
-        predicted = named_in_pieces(piece, batch, rows.n_rows)
+        predicted = quantities.predicted(self, batch, conditions)
         return {name: _unbatch(value, single) for name, value in predicted.items()}
 
     def predict_data(self, theta: ArrayLike) -> FloatArray:
@@ -246,27 +232,7 @@ class Problem:
             ``(B, N)``, or ``(B, n)`` for a product that is defined for n of the rows.
         """
         batch, _ = self._batch(theta)
-        found = named_in_pieces(self._derived, batch, self.conditions.n_rows)
-        for name in self.spec.derived:
-            # the same in all rows it is defined for, such as those of one state of skin
-            if name in found and (found[name] == found[name][:, :1]).all():
-                found[name] = np.ascontiguousarray(found[name][:, :1])
-        return found
-
-    def _derived(self, batch: FloatArray) -> dict[str, FloatArray]:
-        inputs = self.inputs(batch)
-        with np.errstate(all="ignore"):
-            quantities = dict(self.model.derived(inputs, self.tables))
-            known = inputs | quantities
-            for name, block in self.spec.derived.items():
-                product = np.ones((1, 1))
-                for factor, power in block.product.items():
-                    product = product * np.asarray(known[factor]) ** power
-                chosen = self.conditions.matching(block.rows)
-                if not chosen.any():  # data of the user's own without such rows
-                    continue
-                quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
-        return {name: np.array(np.atleast_2d(value)) for name, value in quantities.items()}
+        return quantities.derived(self, batch)
 
     def explain(self, theta: ArrayLike) -> list[str]:
         """Sentences on why predictions at ``theta`` are missing or doubtful, empty if nothing is to be said."""
@@ -279,17 +245,7 @@ class Problem:
     def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
         """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
         batch, _ = self._batch(theta)
-        raised = self.model.flags
-        if raised is None:
-            return {}
-
-        def piece(theta: FloatArray) -> dict[str, NDArray[np.bool_]]:
-            with np.errstate(all="ignore"):
-                found = raised(self.inputs(theta), self.tables)
-            shape = (len(theta), self.conditions.n_rows)
-            return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
-
-        return named_in_pieces(piece, batch, self.conditions.n_rows)
+        return quantities.flags(self, batch)
 
     def simulate(
         self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
@@ -322,17 +278,7 @@ class Problem:
 
     def profile(self, profile: Profile, theta: FloatArray, row: int = 0) -> tuple[FloatArray, FloatArray]:
         """A curve of the forward model at the conditions of one row: abscissa ``(K,)`` and ordinate ``(B, K)``."""
-        inputs = {
-            name: np.ascontiguousarray(
-                np.broadcast_to(value, (value.shape[0], self.conditions.n_rows))[:, row]
-            )
-            for name, value in self.inputs(theta).items()
-        }
-        tables = self.tables.at_row(row)
-        with np.errstate(all="ignore"):
-            grid = profile.grid(inputs, tables)
-            curve = profile.evaluate(inputs, tables, grid)
-        return grid, np.array(np.broadcast_to(curve, (len(theta), len(grid))))
+        return quantities.profile(self, profile, theta, row)
 
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
         """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""

@@ -251,10 +251,7 @@ class CrossedGroups:
         return mean, covariance
 
     def independent(self, residual: ArrayLike, width: ArrayLike, scales: ArrayLike) -> FloatArray:
-        """Residuals as numbers that scatter independently with width 1, R with R Rᵀ = r Σ⁻¹ rᵀ for any two of them.
-
-        The terms of the sum of squares above, which are linear in the residuals: what the effects leave over the width, and the
-        effects over their scale.
+        """Residuals as numbers that scatter independently with width 1: R Rᵀ = r Σ⁻¹ rᵀ, the terms of the sum of squares above.
 
         Parameters
         ----------
@@ -271,17 +268,16 @@ class CrossedGroups:
 
         Examples
         --------
-        >>> import numpy as np
         >>> groups = CrossedGroups.of_labels({"subject": np.array(["x", "x", "y"])})
         >>> found = groups.independent(np.array([[0.3, 0.1, -0.2]]), 0.1, 0.2)
         >>> float((found @ found.T)[0, 0].round(6))
-        3.577778
+        3.688889
         """
         data = self._data(residual, width, scales)
         with np.errstate(all="ignore"):
             effects = self._effects(data)
-            left = (data.residual - self.at_rows(effects.mean)) / data.width
-            found = np.concatenate([left, effects.centre], axis=-1)
+            own = (data.residual - self.at_rows(effects.mean)) / data.width
+            found = np.concatenate([own, effects.centre], axis=-1)
         found[~(data.possible & effects.sound)] = nan
         return found
 
