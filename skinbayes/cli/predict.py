@@ -23,6 +23,10 @@ def parse_settings(pairs: tuple[str, ...]) -> dict[str, str]:
     return settings
 
 
+MOST_ROWS = 200
+"""Longest table."""
+
+
 @click.command()
 @click.argument("model")
 @click.option(
@@ -118,6 +122,8 @@ def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[s
     headers = [*columns, *prediction]
     cells = [
         [text(name, values[i]) for name, values in (*columns.items(), *prediction.items())]
-        for i in range(problem.conditions.n_rows)
+        for i in range(min(MOST_ROWS, problem.conditions.n_rows))
     ]
     print_table(headers, cells, right=range(len(columns), len(headers)))
+    if left := problem.conditions.n_rows - len(cells):
+        click.echo(f"{left} further rows; --json gives all")

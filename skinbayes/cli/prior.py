@@ -6,6 +6,9 @@ import click
 
 from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
 
+MOST_ROWS = 200
+"""Longest table: of more data those are listed that the priors expect least."""
+
 
 @click.command()
 @click.argument("model")
@@ -30,6 +33,7 @@ def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) ->
     if as_json:
         print_json(result.to_dict())
         return
+    shown = result.most_surprising(MOST_ROWS)
     for observable in result.observables:
         unit = QUANTITIES[observable].unit
         rows = [
@@ -38,9 +42,15 @@ def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) ->
                 *(format_quantity(v, unit) for v in (row.observed, row.q05, row.median, row.q95)),
                 f"{100 * row.share_below:.0f} %",
             )
-            for row in result.rows
+            for row in shown
             if row.observable == observable
         ]
         print_table(("row", "observed", "prior 5 %", "prior median", "prior 95 %", "draws below"), rows,
                     right=(1, 2, 3, 4, 5), title=observable)  # fmt: skip
-    print_sentences(result.sentences())
+    said = result.sentences()
+    if len(shown) < len(result.rows):
+        said.insert(
+            0,
+            f"Listed are the {len(shown)} of {len(result.rows)} data that the priors expect least; --json gives all.",
+        )
+    print_sentences(said)

@@ -33,8 +33,8 @@ def spread_ratios(parts: Decomposition, functionals: FloatArray) -> list[float]:
     return [float(value) for value in np.median(np.sqrt(variance), axis=0)]
 
 
-def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: IntArray) -> Group:
-    """What the rows ``rows`` determine, given the noise of each row of the problem (shape ``(N,)``)."""
+def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: IntArray, count: int) -> Group:
+    """What the rows ``rows``, ``count`` data, determine, given the noise of each row of the problem (shape ``(N,)``)."""
     scaled = found.scaled(noise, rows)
     parts = decompose(scaled)
     counts = (parts.values >= INFORMED).sum(axis=1)
@@ -44,7 +44,7 @@ def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: Int
     effect = np.quantile(np.linalg.norm(scaled, axis=1), 0.9, axis=0)
     return Group(
         label=label,
-        rows=len(rows),
+        rows=count,
         directions=rank,
         directions_range=(round(float(low)), round(float(high))),
         spread_ratios=tuple(

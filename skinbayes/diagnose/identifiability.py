@@ -39,6 +39,7 @@ def identify(
     prior_standard_deviation: ArrayLike | None = None,
     groups: Mapping[str, ArrayLike] | None = None,
     derived: Derived | None = None,
+    rows: int | None = None,
     maximum_draws: int = 48,
 ) -> Identifiability:
     """Find out which combinations of parameters the data determine.
@@ -54,6 +55,7 @@ def identify(
     groups : label to indices of rows, for groups that are looked at by themselves; all rows are always added
     derived : ``(B, D)`` to named quantities, each ``(B,)`` or ``(B, N)``; parameters that act only through one of
         them are replaced by it
+    rows : number of data, if ``predict`` gives more numbers than data (those that data scattering together come down to)
     maximum_draws : number of draws that are used; fewer, but at least 8, for many thousands of rows
 
     Returns
@@ -80,21 +82,25 @@ def identify(
     logs = tuple(np.asarray(positive, dtype=bool).tolist())
     spread = _prior_spread(names, points, logs, prior_standard_deviation)
     with np.errstate(all="ignore"):
-        rows = np.shape(predict(points[:1]))[1]
-    affordable = MAXIMUM_ELEMENTS // (rows * len(names))
+        columns = np.shape(predict(points[:1]))[1]
+    affordable = MAXIMUM_ELEMENTS // (columns * len(names))
     count = min(maximum_draws, max(FEWEST_DRAWS, affordable))
     found = sensitivities(names, predict, points[:count], logs, spread, derived)
-    noise = np.broadcast_to(np.asarray(noise_standard_deviation, dtype=float), (rows,))
+    noise = np.broadcast_to(np.asarray(noise_standard_deviation, dtype=float), (columns,))
     if not ((noise > 0.0) & np.isfinite(noise)).all():
         raise InputError("The noise of each row must be a finite number > 0.")
-    everything = np.arange(rows)
+    everything = np.arange(columns)
     parts = {label: np.atleast_1d(np.asarray(index, dtype=int)) for label, index in (groups or {}).items()}
-    parts = {label: index for label, index in parts.items() if len(set(index.tolist())) < rows}
+    parts = {label: index for label, index in parts.items() if len(set(index.tolist())) < columns}
     parts["all rows"] = everything
     scaled = found.scaled(noise, everything)
     effect = np.quantile(np.linalg.norm(scaled, axis=1), 0.9, axis=0)
     mute = effect < INFORMED
-    findings = tuple(group_finding(found, label, noise, index) for label, index in parts.items())
+    counts = {"all rows": rows or columns}
+    findings = tuple(
+        group_finding(found, label, noise, index, counts.get(label, len(index)))
+        for label, index in parts.items()
+    )
     return Identifiability(
         names=names,
         points=len(scaled),

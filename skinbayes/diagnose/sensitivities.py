@@ -54,7 +54,8 @@ class Sensitivities:
         means = {}
         for name, slopes in self.derived.items():
             if slopes.ndim == 3:  # a quantity that is the same for all rows may come as (B, 1)
-                slopes = slopes[:, rows if slopes.shape[1] > 1 else slice(None), :].mean(axis=1)
+                here = rows[rows < slopes.shape[1]] if slopes.shape[1] > 1 else slice(None)
+                slopes = slopes[:, here, :].mean(axis=1)
             means[name] = slopes * self.prior_spread
         return means
 

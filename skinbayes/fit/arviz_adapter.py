@@ -51,7 +51,7 @@ def loo(groups: Mapping[str, xarray.Dataset]) -> dict[str, Any]:
     """
     densities = [variable.values for variable in groups["log_likelihood"].data_vars.values()]
     joined = np.concatenate([values.reshape(*values.shape[:2], -1) for values in densities], axis=-1)
-    return _left_out(groups["posterior"], joined)
+    return _left_out(_same_draws(groups, "log_likelihood"), joined)
 
 
 def leave_level_out(groups: Mapping[str, xarray.Dataset], column: str) -> dict[str, Any]:
@@ -66,8 +66,13 @@ def leave_level_out(groups: Mapping[str, xarray.Dataset], column: str) -> dict[s
         As :func:`loo`, one entry for each level, and ``levels``
     """
     variable = groups["log_likelihood_left_out"][column]
-    found = _left_out(groups["posterior"], variable.values)
+    found = _left_out(_same_draws(groups, "log_likelihood_left_out"), variable.values)
     return found | {"levels": tuple(str(level) for level in variable[f"{column}_level"].values)}
+
+
+def _same_draws(groups: Mapping[str, xarray.Dataset], name: str) -> xarray.Dataset:
+    """The posterior at the draws of a group, which are not all where there are many rows of data."""
+    return groups["posterior"].sel(draw=groups[name]["draw"])
 
 
 def _left_out(posterior: xarray.Dataset, log_density: FloatArray) -> dict[str, Any]:

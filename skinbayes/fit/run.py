@@ -96,9 +96,7 @@ def sample(
         raise InputError(
             f"{problem.spec.path}: nothing to infer: the model needs [data] and at least one prior"
         )
-    settings = SamplerOptions(
-        seed=seed, ess=ess, cores=cores, **{"costly": problem.forward.costly, **options}
-    )
+    settings = SamplerOptions(seed=seed, ess=ess, cores=cores, **{"costly": problem.costly, **options})
     settings.walkers_for(problem.dimension)  # refuses too few before anything is written
     if directory is None:
         return _fit(problem, settings, None, progress, preparing)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.problem.subsets import one_row_of_each_level
 from skinbayes.units import product_unit
 from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX, lookup
 
@@ -18,7 +20,16 @@ if TYPE_CHECKING:
     from skinbayes.problem import Problem
 
 CHUNK = 500
-"""Parameter vectors predicted at a time, to bound memory with many rows of data."""
+"""Parameter vectors predicted at a time."""
+
+CHUNK_NUMBERS = 1_000_000
+"""Numbers predicted at a time at most: with more than 2,000 rows of data fewer vectors are taken."""
+
+KEPT_NUMBERS = 4_000_000
+"""Draws times rows that are kept of what differs by row (32 MB): with more than 400 rows not every draw is."""
+
+MOST_ROWS_EACH = 400
+"""With more rows than this, what is derived for each row stands in a group of its own, apart from the parameters."""
 
 FLAG_DRAWS = 500
 """Draws of which the edge of the theory is looked at."""
@@ -41,30 +52,36 @@ def posterior_groups(
     dict
         ``posterior`` (parameters, derived quantities, effects of groups), ``sample_stats``, ``posterior_predictive``,
         ``log_likelihood`` (pointwise), ``log_likelihood_left_out`` (by levels of grouping columns) and ``validity`` (share
-        of the draws in which a row is at the edge of the theory)
+        of the draws in which a row is at the edge of the theory); with more than 400 rows ``derived_by_row``. What differs by row
+        is kept of evenly spaced draws, as many as `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
     """
     effects = (
-        None if problem.groups is None else _in_parts(lambda part: problem.draw_effects(part, rng), draws)
+        None
+        if problem.groups is None
+        else _in_parts(problem, lambda part: problem.draw_effects(part, rng), draws)
     )
+    step = _thinning(problem, draws)
+    kept, kept_effects = draws[:, ::step], None if effects is None else effects[:, ::step]
+    pointwise = partial(problem.log_likelihood, pointwise=True)
     groups = {
         "posterior": _parameters(problem, draws, effects),
         "sample_stats": _dataset({"lp": (("chain", "draw"), log_density)}, draws),
-        "posterior_predictive": _rows(problem, _simulated(problem, draws, rng, effects), draws),
-        "log_likelihood": _rows(
-            problem, _in_parts(lambda part: problem.log_likelihood(part, pointwise=True), draws), draws
-        ),
+        "posterior_predictive": _rows(problem, _simulated(problem, kept, rng, kept_effects), kept, step),
+        "log_likelihood": _rows(problem, _in_parts(problem, pointwise, kept), kept, step),
     }
+    if by_row := _derived_by_row(problem, kept):
+        groups["derived_by_row"] = _dataset(by_row, kept, {"row": problem.conditions.row_labels()}, step)
     left_out = {
         column: (
             ("chain", "draw", f"{column}_level"),
-            _in_parts(partial(problem.log_likelihood_left_out, column=column), draws),
+            _in_parts(problem, partial(problem.log_likelihood_left_out, column=column), kept),
         )
         for column in columns_to_leave_out(problem)
     }
     if left_out:
         labels = problem.conditions.labels
         levels = {f"{column}_level": list(dict.fromkeys(labels[column].tolist())) for column in left_out}
-        groups["log_likelihood_left_out"] = _dataset(left_out, draws, levels)
+        groups["log_likelihood_left_out"] = _dataset(left_out, kept, levels, step)
     if flags := _flags(problem, draws):
         groups["validity"] = _dataset(flags, draws, {"row": problem.conditions.row_labels()})
     return groups
@@ -88,8 +105,12 @@ def _flags(problem: Problem, draws: FloatArray) -> dict[str, Any]:
 def prior_groups(problem: Problem, rng: np.random.Generator, count: int) -> dict[str, xarray.Dataset]:
     """``prior`` and ``prior_predictive`` groups of ``count`` draws."""
     draws = problem.draw_prior(rng, count)[np.newaxis]
-    predictive = _simulated(problem, draws, rng, None)
-    return {"prior": _parameters(problem, draws), "prior_predictive": _rows(problem, predictive, draws)}
+    step = _thinning(problem, draws)
+    predictive = _simulated(problem, draws[:, ::step], rng, None)
+    return {
+        "prior": _parameters(problem, draws),
+        "prior_predictive": _rows(problem, predictive, draws[:, ::step], step),
+    }
 
 
 def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
@@ -139,7 +160,7 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
                 dimension = f"{name}_{dimension}"
                 coordinates[dimension] = levels
             variables[name] = (("chain", "draw", dimension), draws[..., [i for i, _ in entries]])
-    derived = _in_chunks(problem.derived, draws)
+    derived = _derived(problem, draws)
     labels = problem.conditions.row_labels()
     for name, values in derived.items():
         if values.shape[-1] not in (1, problem.conditions.n_rows):
@@ -179,17 +200,62 @@ def _simulated(
     """Data simulated from each draw, with its effects of groups or new ones, shape ``(chain, draw, M)``."""
     flat = draws.reshape(-1, draws.shape[-1])
     given = None if effects is None else effects.reshape(len(flat), -1)
+    count = _chunk(problem)
     parts = [
-        problem.simulate(flat[i : i + CHUNK], rng, None if given is None else given[i : i + CHUNK])
-        for i in range(0, len(flat), CHUNK)
+        problem.simulate(flat[i : i + count], rng, None if given is None else given[i : i + count])
+        for i in range(0, len(flat), count)
     ]
     return np.concatenate(parts).reshape(*draws.shape[:2], -1)
 
 
-def _in_parts(function: Callable[[FloatArray], FloatArray], draws: FloatArray) -> FloatArray:
-    """A function of parameter vectors at all draws, some at a time, shape ``(chain, draw, ·)``."""
+def _thinning(problem: Problem, draws: FloatArray) -> int:
+    """One draw of so many is kept of what differs by row; 1 with few rows."""
+    numbers = draws.shape[0] * draws.shape[1] * problem.conditions.n_rows
+    return max(1, ceil(numbers / KEPT_NUMBERS))
+
+
+def _chunk(problem: Problem) -> int:
+    return max(1, min(CHUNK, CHUNK_NUMBERS // problem.conditions.n_rows))
+
+
+def _derived(problem: Problem, draws: FloatArray) -> dict[str, FloatArray]:
+    """Derived quantities at all draws, ``(chain, draw, ·)``; with many rows only what the rows of a level share."""
+    if problem.conditions.n_rows <= MOST_ROWS_EACH:
+        return _in_chunks(problem.derived, draws)
+    few = one_row_of_each_level(problem)
+    shared = _shared_by_rows(problem, draws)
+    found = {name: values for name, values in _in_chunks(few.derived, draws).items() if name in shared}
+    return {name: values[..., :1] for name, values in found.items()}
+
+
+def _derived_by_row(problem: Problem, draws: FloatArray) -> dict[str, Any]:
+    """What is derived for each row and stands apart from the parameters because there are many rows."""
+    if problem.conditions.n_rows <= MOST_ROWS_EACH:
+        return {}
     flat = draws.reshape(-1, draws.shape[-1])
-    parts = [function(flat[i : i + CHUNK]) for i in range(0, len(flat), CHUNK)]
+    found = {
+        name: values
+        for name, values in problem.derived(flat).items()
+        if values.shape[-1] == problem.conditions.n_rows
+    }
+    return {
+        name: (("chain", "draw", "row"), values.reshape(*draws.shape[:2], -1))
+        for name, values in found.items()
+    }
+
+
+def _shared_by_rows(problem: Problem, draws: FloatArray) -> set[str]:
+    """Derived quantities that are the same for all rows of those they are defined for."""
+    some = draws.reshape(-1, draws.shape[-1])[:2]
+    return {name for name, values in problem.derived(some).items() if values.shape[-1] == 1}
+
+
+def _in_parts(
+    problem: Problem, function: Callable[[FloatArray], FloatArray], draws: FloatArray
+) -> FloatArray:
+    """A function of parameter vectors at all draws, some at a time, shape ``(chain, draw, ·)``."""
+    flat, count = draws.reshape(-1, draws.shape[-1]), _chunk(problem)
+    parts = [function(flat[i : i + count]) for i in range(0, len(flat), count)]
     return np.concatenate(parts).reshape(*draws.shape[:2], -1)
 
 
@@ -208,24 +274,28 @@ def _in_chunks(function: Any, draws: FloatArray) -> dict[str, FloatArray]:
     return joined
 
 
-def _rows(problem: Problem, values: FloatArray, draws: FloatArray) -> xarray.Dataset:
+def _rows(problem: Problem, values: FloatArray, draws: FloatArray, step: int) -> xarray.Dataset:
     parts = np.split(values, len(problem.observations), axis=-1)
     variables = {
         name: (("chain", "draw", "row"), part) for name, part in zip(problem.observables, parts, strict=True)
     }
-    return _dataset(variables, draws, {"row": problem.conditions.row_labels()})
+    return _dataset(variables, draws, {"row": problem.conditions.row_labels()}, step)
 
 
 def _dataset(
     variables: dict[str, Any],
     draws: FloatArray,
     coordinates: dict[str, list[str]] | None = None,
+    step: int = 1,
 ) -> xarray.Dataset:
+    """Variables of draws, of which one in ``step`` of the posterior's is here."""
     import xarray
 
-    chains = {"chain": np.arange(draws.shape[0]), "draw": np.arange(draws.shape[1])}
+    chains = {"chain": np.arange(draws.shape[0]), "draw": step * np.arange(draws.shape[1])}
     dataset = xarray.Dataset(variables, coords={**chains, **(coordinates or {})})
     _add_units(dataset)
+    if step > 1:
+        dataset.attrs["kept"] = f"one draw in {step}"
     return dataset
 
 

@@ -77,6 +77,42 @@ def once_for_alike(
     return found
 
 
+def on_distinct(inputs: Inputs, function: Callable[[Inputs], FloatArray]) -> FloatArray:
+    """Evaluate a function of arrays on the columns that differ, all at once.
+
+    Parameters
+    ----------
+    inputs : name to SI values, each broadcasts to ``(B, N)``
+    function : ``inputs -> values`` where each broadcasts to ``(B, K)``, for K columns
+
+    Returns
+    -------
+    ndarray
+        Broadcasts to ``(B, N)``, columns in their order.
+
+    Examples
+    --------
+    >>> rows = {"modulus": np.array([[7.0, 9.0, 7.0, 7.0]]), "depth": np.array([[2.0]])}
+    >>> on_distinct(rows, lambda few: few["modulus"] * few["depth"])
+    array([[14., 18., 14., 14.]])
+    """
+    tables = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
+    differing = [table for table in tables.values() if table.ndim == 2 and table.shape[-1] > 1]
+    if not differing:
+        return function(inputs)
+    count = differing[0].shape[-1]
+    place = _kinds(differing, count)
+    first = _first_of_each(place)
+    if len(first) == count:
+        return function(inputs)
+    few = {
+        name: np.take(table, first, axis=-1) if table.ndim == 2 and table.shape[-1] > 1 else table
+        for name, table in tables.items()
+    }
+    values = function(few)
+    return np.take(values, place, axis=-1) if np.shape(values)[-1:] == (len(first),) else values
+
+
 def _common(
     tables: dict[str, FloatArray], count: int
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, FloatArray]]]:
@@ -95,5 +131,36 @@ def _groups(tables: list[FloatArray], count: int) -> list[NDArray[np.intp]]:
     """Rows of equal columns in all tables, each of shape ``(B, N)``."""
     if not tables:
         return [np.arange(count)]
-    _, group = np.unique(np.concatenate(tables), axis=1, return_inverse=True)
-    return [np.flatnonzero(group.reshape(-1) == g) for g in range(int(group.max()) + 1)]
+    place = _kinds(tables, count)
+    order = np.argsort(place, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(place[order])) + 1)
+
+
+def _kinds(tables: list[FloatArray], count: int) -> NDArray[np.intp]:
+    """A number for each row, 0, 1, …, the same for rows of equal columns in all tables, each of shape ``(B, N)``."""
+    found = np.zeros(count, dtype=np.intp)
+    for table in tables:
+        if not len(table):
+            continue
+        # rows that differ mostly do so in the first vector: its numbers are sorted, those of the others compared
+        found = _refined(found, table[0], count)
+        shared = table[:, _first_of_each(found)][:, found]
+        for vector in np.flatnonzero((shared != table).any(axis=1)):
+            found = _refined(found, table[vector], count)
+    return found
+
+
+def _refined(kinds: NDArray[np.intp], values: FloatArray, count: int) -> NDArray[np.intp]:
+    """Kinds of rows told apart by one more number each."""
+    _, place = np.unique(values, return_inverse=True)
+    found = place.reshape(-1)
+    if kinds.any():
+        _, found = np.unique(kinds * count + found, return_inverse=True)
+    return np.asarray(found.reshape(-1), dtype=np.intp)
+
+
+def _first_of_each(kinds: NDArray[np.intp]) -> NDArray[np.intp]:
+    """One row of each kind."""
+    first = np.empty(int(kinds.max()) + 1, dtype=np.intp)
+    first[kinds] = np.arange(len(kinds))
+    return first

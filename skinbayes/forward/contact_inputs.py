@@ -15,6 +15,7 @@ from skinbayes.contact import (
     stress_variance,
     validate_skin,
 )
+from skinbayes.forward.alike_rows import on_distinct
 from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs, Tables
 from skinbayes.roughness import (
     PowerSpectrum,
@@ -97,6 +98,20 @@ def validate_contact(inputs: Inputs, tables: Tables) -> None:
     if isinstance(spectrum, SelfAffineSpectrum):
         validate_spectrum(spectrum)
     validate_skin(skin_of(inputs))
+
+
+_ENTERS_VARIANCE = (*SKIN_INPUTS, "poisson_ratio_layer", "poisson_ratio_bulk", *ROUGHNESS_INPUTS)
+
+
+def variance_of(inputs: Inputs, tables: Tables) -> FloatArray:
+    """Return the stress variance at full magnification [Pa²], an integral that is made once for rows of equal skin.
+
+    Load and yield stress do not enter it: rows that differ in these alone share it.
+    """
+    return on_distinct(
+        {name: inputs[name] for name in _ENTERS_VARIANCE if name in inputs},
+        lambda skins: np.asarray(stress_variance(spectrum_of(skins, tables), skin_of(skins))),
+    )
 
 
 def contact_area_of(inputs: Inputs, tables: Tables, variance: FloatArray | None = None) -> ContactArea:

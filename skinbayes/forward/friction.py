@@ -13,6 +13,7 @@ from skinbayes.forward.contact_inputs import (
     nominal_pressure_of,
     spectrum_of,
     validate_contact,
+    variance_of,
 )
 from skinbayes.friction import friction_coefficient
 from skinbayes.roughness import rms_slope
@@ -20,13 +21,15 @@ from skinbayes.roughness import rms_slope
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     pressure = nominal_pressure_of(inputs)
-    area = contact_area_of({**inputs, "nominal_pressure": pressure}, tables).total
+    area = contact_area_of(
+        {**inputs, "nominal_pressure": pressure}, tables, variance_of(inputs, tables)
+    ).total
     shear_stress = inputs["frictional_shear_stress"]
     return {"friction_coefficient": friction_coefficient(shear_stress, area, pressure)}
 
 
 def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    area = contact_area_of(inputs, tables)
+    area = contact_area_of(inputs, tables, variance_of(inputs, tables))
     return {
         "nominal_pressure": nominal_pressure_of(inputs),
         "rms_slope": rms_slope(spectrum_of(inputs, tables)),

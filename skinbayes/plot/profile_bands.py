@@ -22,6 +22,9 @@ DRAWS = 200
 
 MOST_CURVES = 4
 
+MOST_KINDS = 200
+"""Kinds of rows whose curves are looked at to find the lowest and the highest."""
+
 SAME = 1e-3
 """Rows whose curves agree within this relative difference share one curve."""
 
@@ -109,7 +112,7 @@ def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tupl
         same = alike.setdefault(tuple(float(values[row]) for values in differing), [])
         same.append(row)
     # rows of the same inputs share a curve without it being computed again, and others may still do
-    for alike_rows in alike.values():
+    for alike_rows in _spread_out(alike):
         grid, curve = curve_at_row(problem, profile, middle, alike_rows[0])
         both = np.concatenate([grid, curve[0]])
         for known, rows in groups:
@@ -123,6 +126,14 @@ def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tupl
     groups.sort(key=lambda group: float(group[0][np.isfinite(group[0])][-1]))
     chosen = (("lowest: ", groups[0]), ("middle: ", groups[len(groups) // 2]), ("highest: ", groups[-1]))
     return [(word, rows) for word, (_, rows) in chosen]
+
+
+def _spread_out(alike: dict[tuple[float, ...], list[int]]) -> list[list[int]]:
+    """Rows of the same inputs, all kinds of them or, of very many, some evenly spaced in the order of their inputs."""
+    if len(alike) <= MOST_KINDS:
+        return list(alike.values())
+    ordered = sorted(alike)
+    return [alike[ordered[i]] for i in np.linspace(0, len(ordered) - 1, MOST_KINDS).round().astype(int)]
 
 
 def _row_text(names: list[str], rows: list[int], shared: bool) -> str:

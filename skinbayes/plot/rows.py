@@ -61,7 +61,7 @@ def row_predictions(fit: Fit, problem: Problem) -> RowPredictions:
     logarithmic = problem.noise_is_logarithmic.reshape(len(problem.observables), -1)[:, 0]
     return RowPredictions(
         {name: predicted[name] for name in problem.observables},
-        {column: effect_at_rows(fit, column)[::step] for column in group_columns(fit)},
+        {column: effect_at_rows(fit, column, step) for column in group_columns(fit)},
         {name: bool(flag) for name, flag in zip(problem.observables, logarithmic, strict=True)},
     )
 
@@ -73,11 +73,11 @@ def effect_draws(fit: Fit, column: str) -> tuple[list[str], FloatArray]:
     return levels, np.asarray(variable.values, dtype=float).reshape(-1, len(levels))
 
 
-def effect_at_rows(fit: Fit, column: str) -> FloatArray:
-    """Posterior draws of the effect of a grouping column at each row, shape ``(draws, N)``."""
+def effect_at_rows(fit: Fit, column: str, step: int = 1) -> FloatArray:
+    """One in ``step`` posterior draws of the effect of a grouping column at each row, shape ``(draws, N)``."""
     levels, draws = effect_draws(fit, column)
     place = {level: i for i, level in enumerate(levels)}
-    return draws[:, [place[level] for level in levels_of_rows(fit, column)]]
+    return draws[::step, [place[level] for level in levels_of_rows(fit, column)]]
 
 
 def group_columns(fit: Fit) -> list[str]:

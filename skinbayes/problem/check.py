@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.problem.failures import explained
+from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 
 DRAWS = 1000
 """Prior draws that are tried."""
+
+PREDICTIONS = 2_000_000
+"""Predictions that are made of them at most: with more than 2,000 rows fewer draws are tried."""
+
+FEWEST_DRAWS = 200
+"""Prior draws that are tried with any number of rows."""
 
 MOST_LEVELS = 5
 """Grouping columns with more levels than this (people) are not looked at level by level."""
@@ -78,12 +84,13 @@ def check_problem(problem: Problem, seed: int = 1) -> CheckReport:
     InputError
         No prior draw gives a finite prediction.
     """
-    draws = problem.draw_prior(np.random.default_rng([seed, 3]), DRAWS) if problem.free else np.zeros((1, 0))
-    predictions, usable = _predictions(problem, draws)
+    count = max(FEWEST_DRAWS, min(DRAWS, PREDICTIONS // problem.conditions.n_rows))
+    draws = problem.draw_prior(np.random.default_rng([seed, 3]), count) if problem.free else np.zeros((1, 0))
+    predictions, usable, positive = _predictions(problem, draws)
     identifiability = None
     if problem.observed is not None and problem.free:
         with explained(problem.spec.path, "what the data can tell cannot be computed"):
-            identifiability = _identify(problem, draws[usable])
+            identifiability = _identify(problem, draws[usable], positive)
     return CheckReport(problem.name, _setup(problem), _priors(problem), predictions, identifiability)
 
 
@@ -127,14 +134,23 @@ def _priors(problem: Problem) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _predictions(problem: Problem, draws: FloatArray) -> tuple[tuple[str, ...], NDArray[np.bool_]]:
-    """Sentences about finite predictions, and which of the draws have them."""
-    predicted = problem.predict(draws)
-    finite = np.all([np.isfinite(values).all(axis=-1) for values in predicted.values()], axis=0)
+def _predictions(
+    problem: Problem, draws: FloatArray
+) -> tuple[tuple[str, ...], NDArray[np.bool_], NDArray[np.bool_]]:
+    """Sentences about finite predictions, which of the draws have them, and which data are predicted > 0 by all of those."""
+    finite, positive = np.ones(len(draws), dtype=bool), np.ones(0, dtype=bool)
+    step = max(1, PIECE // problem.conditions.n_rows)
+    for start in range(0, len(draws), step):  # nothing is kept but what the sentences need
+        predicted = problem.predict(draws[start : start + step])
+        found = np.all([np.isfinite(values).all(axis=-1) for values in predicted.values()], axis=0)
+        finite[start : start + step] = found
+        if problem.observations:
+            above = [(predicted[name][found] > 0).all(axis=0) for name in problem.observables]
+            positive = np.concatenate(above) & (positive if start else True)
     if not finite.any():
         raise InputError(f"{problem.spec.path}: none of {len(draws)} prior draws gives a finite prediction")
     if not problem.free:
-        return ("The prediction is finite at all conditions.",), finite
+        return ("The prediction is finite at all conditions.",), finite, positive
     if finite.all():
         said = [f"All of {len(draws)} prior draws give finite predictions."]
     else:
@@ -147,10 +163,10 @@ def _predictions(problem: Problem, draws: FloatArray) -> tuple[tuple[str, ...], 
         possible = np.isfinite(problem.log_likelihood(draws[finite]))
         if not possible.all():
             said.append(f"{(~possible).sum()} of them give the data no probability at all.")
-    return tuple(said), finite
+    return tuple(said), finite, positive
 
 
-def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
+def _identify(problem: Problem, draws: FloatArray, positive: NDArray[np.bool_]) -> Identifiability | None:
     scatter = (*noise_parameter_names(), "group_scale")
     entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
     if not entering:
@@ -163,17 +179,18 @@ def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
         return vectors
 
     typical = problem.predict_data(centre)
-    logarithmic = (typical > 0) & (problem.predict_data(draws) > 0).all(axis=0)
+    logarithmic = (typical > 0) & positive
     # what scatters is taken on the scale of the predictions
     scale = np.where(logarithmic & ~problem.noise_is_logarithmic, 1 / typical, 1.0)
-    whiten, width = _whitening(problem, centre, scale)
 
     def predict(theta: FloatArray) -> FloatArray:
         predicted = problem.predict_data(full(theta))
         with np.errstate(all="ignore"):
-            return whiten(np.where(logarithmic, np.log(predicted), predicted))
+            values = np.where(logarithmic, np.log(predicted), predicted)
+            # group effects make data scatter together: what only shifts a whole group is not taken for information
+            return problem.independent_scatter(centre, values / scale)
 
-    def derived(theta: FloatArray) -> dict[str, FloatArray]:
+    def blocks(theta: FloatArray) -> dict[str, FloatArray]:
         # the quantity of each parameter vector; a block that the parameters leave alone comes once for all
         found = problem.forward.derived(problem.inputs(full(theta)), problem.tables)
         shape = (len(theta), problem.conditions.n_rows)
@@ -182,34 +199,18 @@ def _identify(problem: Problem, draws: FloatArray) -> Identifiability | None:
             name: np.tile(np.broadcast_to(found[name], shape), repeats) for name in problem.forward.blocks
         }
 
+    def derived(theta: FloatArray) -> dict[str, FloatArray]:
+        return named_in_pieces(blocks, theta, problem.conditions.n_rows)
+
     return identify(
         [problem.names[i] for i in entering],
         predict,
         draws[:, entering],
-        width,
+        1.0,
+        rows=len(typical),
         groups=_groups(problem),
         derived=derived,
     )
-
-
-def _whitening(
-    problem: Problem, centre: FloatArray, scale: FloatArray
-) -> tuple[Callable[[FloatArray], FloatArray], FloatArray]:
-    """Map of predictions to ones that scatter independently, and the width of that scatter.
-
-    Group effects make data scatter together; what only shifts a whole group is then not taken for information.
-    """
-    if problem.groups is None:
-        return lambda values: values, problem.noise_width(centre) * scale
-    covariance = problem.scatter_covariance(centre) * np.outer(scale, scale)
-    try:
-        inverse = np.linalg.inv(np.linalg.cholesky(covariance))
-    except np.linalg.LinAlgError:
-        raise InputError(
-            f"{problem.spec.path}: noise: at the prior medians the noise is so small beside the effects of groups "
-            f"({problem.noise_width(centre).min():.2g}) that data of one group could not differ; expected a larger noise_scale"
-        ) from None
-    return lambda values: values @ inverse.T, np.ones(len(scale))
 
 
 def _groups(problem: Problem) -> dict[str, NDArray[np.intp]]:

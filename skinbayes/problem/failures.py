@@ -11,6 +11,8 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 
+FAILED = "the forward model cannot be evaluated"
+
 
 @contextmanager
 def explained(path: Path, doing: str) -> Iterator[None]:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.problem.observations import Observation, propagated_spread
+from skinbayes.problem.pieces import in_pieces
 from skinbayes.statistics.groups import CrossedGroups
 
 if TYPE_CHECKING:
@@ -29,23 +31,11 @@ class Likelihood:
 
     def pointwise(self, theta: FloatArray) -> FloatArray:
         """ln p of each datum, shape ``(B, M)``: given θ, and given all other data where groups share effects."""
-        inputs, predicted = self._predictions(theta)
-        density = np.concatenate(
-            [self._pointwise(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)],
-            axis=-1,
-        )
-        # NaN where the forward model has no answer: samplers count those apart from data that are impossible
-        return np.where(np.isnan(np.concatenate(predicted, axis=-1)), np.nan, density)
+        return in_pieces(self._pointwise, theta, self._size)
 
     def total(self, theta: FloatArray) -> FloatArray:
         """ln p of all data, shape ``(B,)``; NaN where the forward model has no answer."""
-        groups = self.problem.groups
-        if groups is None:
-            return self.pointwise(theta).sum(axis=-1)
-        inputs, (predicted,) = self._predictions(theta)
-        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
-        density = groups.log_density(residual, width, scales) + offset.sum()
-        return np.where(np.isnan(predicted).any(axis=-1), np.nan, density)
+        return in_pieces(self._total, theta, self._size)
 
     def left_out(self, theta: FloatArray, column: str) -> FloatArray:
         """ln p of all data of each level of a grouping column given the others, shape ``(B, levels)``."""
@@ -57,26 +47,26 @@ class Likelihood:
             )
         if len(self._observations) > 1:
             raise InputError(f"{self.problem.spec.path}: leaving out groups needs a model of one observable")
-        levels = list(dict.fromkeys(labels[column].tolist()))
-        block = np.array([levels.index(label) for label in labels[column].tolist()])
-        groups = self.problem.groups
-        if groups is None:
-            pointwise = self.pointwise(theta)
-            return np.stack([pointwise[:, block == i].sum(axis=-1) for i in range(len(levels))], axis=-1)
-        inputs, (predicted,) = self._predictions(theta)
-        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
-        jacobian = np.bincount(block, weights=offset, minlength=len(levels))
-        density = groups.log_density_left_out(residual, width, scales, block) + jacobian
-        return np.where(np.isnan(predicted).any(axis=-1, keepdims=True), np.nan, density)
+        place: dict[str, int] = {}
+        block = np.array([place.setdefault(label, len(place)) for label in labels[column].tolist()])
+        return in_pieces(lambda part: self._left_out(part, block, len(place)), theta, self._size)
 
     def draw(
         self, theta: FloatArray, rng: np.random.Generator, effects: FloatArray | None = None
     ) -> FloatArray:
         """Simulated data, shape ``(B, M)``; effects of groups drawn anew unless given, ``(B, G)``."""
-        inputs, predicted = self._predictions(theta)
+        # predictions in pieces, random numbers for all vectors together: their order does not depend on the pieces
+        predicted = in_pieces(lambda part: np.stack(self._predictions(part)[1], axis=1), theta, self._size)
+        spread = in_pieces(self._stacked_spread, theta, self._size) if self.problem.input_spread else None
+        inputs = self.problem.inputs(theta)
         drawn = [
-            o.noise.draw(rng, f, observed=o.values, **self._arguments(o, inputs))
-            for o, f in zip(self._observations, predicted, strict=True)
+            o.noise.draw(
+                rng,
+                predicted[:, i],
+                observed=o.values,
+                **o.noise_arguments(inputs, None if spread is None else spread[:, i]),
+            )
+            for i, o in enumerate(self._observations)
         ]
         groups = self.problem.groups
         if groups is not None:
@@ -92,27 +82,30 @@ class Likelihood:
         groups = self.problem.groups
         if groups is None:
             raise InputError(f"{self.problem.spec.path}: '{self.problem.name}' has no [groups]")
-        inputs, (predicted,) = self._predictions(theta)
-        residual, width, scales, _ = self._residuals(groups, inputs, predicted)
-        return groups.draw_effects(rng, residual, width, scales)
+
+        def piece(part: FloatArray) -> FloatArray:
+            inputs, (predicted,) = self._predictions(part)
+            residual, width, scales, _ = self._residuals(groups, inputs, predicted)
+            return groups.draw_effects(rng, residual, width, scales)
+
+        return in_pieces(piece, theta, self._size)
 
     def width(self, theta: FloatArray) -> FloatArray:
         """Width of the noise of each datum, shape ``(B, M)``; of its ln where the noise is logarithmic."""
-        inputs, predicted = self._predictions(theta)
-        return np.concatenate(
-            [self._width(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)], axis=-1
-        )
+        return in_pieces(self._widths, theta, self._size)
 
-    def covariance(self, theta: FloatArray) -> FloatArray:
-        """Covariance of what scatters, group effects included, at one parameter vector ``(D,)``, shape ``(M, M)``."""
+    def independent(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
+        """Changes ``(B, M)`` of the data at one parameter vector ``(D,)`` as numbers that scatter independently, ``(B, M + G)``.
+
+        In units of their width; products of the numbers are those of the changes with the inverse covariance of the data.
+        """
         batch = theta[np.newaxis]
-        covariance = np.diag(self.width(batch)[0] ** 2)
+        width = self.width(batch)
         groups = self.problem.groups
-        if groups is not None:
-            scales = self._scales(groups, self.problem.inputs(batch), 1)[0]
-            for members, scale in zip(groups.member, scales, strict=True):
-                covariance = covariance + scale**2 * (members[:, np.newaxis] == members)
-        return covariance
+        if groups is None:
+            return changes / width
+        scales = self._scales(groups, self.problem.inputs(batch), 1)
+        return groups.independent(changes, width, scales)
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 
@@ -124,10 +117,58 @@ class Likelihood:
             )
         return self.problem.observations
 
+    @property
+    def _size(self) -> int:
+        """Numbers that one vector needs: its data, and the matrix of the levels of groups."""
+        groups = self.problem.groups
+        matrices = 0 if groups is None else groups.matrix_size
+        return len(self._observations) * self.problem.conditions.n_rows + matrices
+
+    def _total(self, theta: FloatArray) -> FloatArray:
+        groups = self.problem.groups
+        if groups is None:
+            return self._pointwise(theta).sum(axis=-1)
+        inputs, (predicted,) = self._predictions(theta)
+        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        density = groups.log_density(residual, width, scales) + offset.sum()
+        return np.where(np.isnan(predicted).any(axis=-1), np.nan, density)
+
+    def _pointwise(self, theta: FloatArray) -> FloatArray:
+        inputs, predicted = self._predictions(theta)
+        density = np.concatenate(
+            [self._of_each(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)],
+            axis=-1,
+        )
+        # NaN where the forward model has no answer: samplers count those apart from data that are impossible
+        return np.where(np.isnan(np.concatenate(predicted, axis=-1)), np.nan, density)
+
+    def _left_out(self, theta: FloatArray, block: NDArray[np.intp], count: int) -> FloatArray:
+        groups = self.problem.groups
+        if groups is None:
+            pointwise = self._pointwise(theta)
+            return np.stack([pointwise[:, block == i].sum(axis=-1) for i in range(count)], axis=-1)
+        inputs, (predicted,) = self._predictions(theta)
+        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        jacobian = np.bincount(block, weights=offset, minlength=count)
+        density = groups.log_density_left_out(residual, width, scales, block) + jacobian
+        return np.where(np.isnan(predicted).any(axis=-1, keepdims=True), np.nan, density)
+
+    def _widths(self, theta: FloatArray) -> FloatArray:
+        inputs, predicted = self._predictions(theta)
+        return np.concatenate(
+            [self._width(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)], axis=-1
+        )
+
+    def _stacked_spread(self, theta: FloatArray) -> FloatArray:
+        """What the known spread of inputs adds to that of each observation, shape ``(B, observations, N)``."""
+        inputs = self.problem.inputs(theta)
+        shape = (len(theta), self.problem.conditions.n_rows)
+        return np.stack([np.broadcast_to(self._spread(o, inputs), shape) for o in self._observations], axis=1)
+
     def _predictions(self, theta: FloatArray) -> tuple[Mapping[str, FloatArray], list[FloatArray]]:
         """All inputs, and the prediction of each observation, ``(B, N)``."""
         inputs = self.problem.inputs(theta)
-        found = self.problem.evaluate(inputs)
+        found = self.problem.evaluate(inputs, alike=self.problem.alike)
         shape = (len(theta), self.problem.conditions.n_rows)
         return inputs, [np.broadcast_to(found[o.name], shape) for o in self._observations]
 
@@ -135,13 +176,16 @@ class Likelihood:
         return observation.noise_arguments(inputs, self._propagated(observation, inputs))
 
     def _propagated(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> FloatArray | None:
-        """Uncertainty of the prediction from the known spread of inputs, if there is any."""
-        if not self.problem.input_spread:
-            return None
+        """What the known spread of inputs adds to that of an observation, shape ``(B, N)``; None without one."""
+        return self._spread(observation, inputs) if self.problem.input_spread else None
+
+    def _spread(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> FloatArray:
+        """What the known spread of inputs adds to that of an observation, shape ``(B, N)``."""
+        problem = self.problem
         return propagated_spread(
-            lambda changed: self.problem.evaluate(changed)[observation.name],
+            lambda changed: problem.evaluate(changed, alike=problem.alike)[observation.name],
             inputs,
-            self.problem.input_spread,
+            problem.input_spread,
             observation,
         )
 
@@ -152,7 +196,7 @@ class Likelihood:
         width = observation.noise.width(predicted, observed=observation.values, **arguments)
         return np.broadcast_to(width, predicted.shape)
 
-    def _pointwise(
+    def _of_each(
         self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
     ) -> FloatArray:
         groups = self.problem.groups

@@ -16,6 +16,15 @@ SURPRISING = 0.005
 """A datum with a smaller share of prior predictive draws on one side of it contradicts the priors."""
 
 
+MOST_NUMBERS = 10_000_000
+"""Draws times data that are made at most (80 MB): with more than 2,500 data fewer than 4,000 draws."""
+
+FEWEST_DRAWS = 1_000
+"""Draws that are made with any number of data: fewer could not tell what contradicts the priors."""
+
+NUMBERS_AT_A_TIME = 1_000_000
+
+
 @dataclass(frozen=True)
 class PredictedRow:
     """One datum and the prior predictive distribution at its conditions, SI; ``share_below`` of the draws lie below it."""
@@ -67,6 +76,13 @@ class PriorPredictive:
             )
         return said
 
+    def most_surprising(self, count: int) -> tuple[PredictedRow, ...]:
+        """The data, or the ``count`` of them furthest out in what the priors predict, in their order."""
+        far = sorted(
+            range(len(self.rows)), key=lambda i: min(self.rows[i].share_below, 1 - self.rows[i].share_below)
+        )
+        return tuple(self.rows[i] for i in sorted(far[:count]))
+
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
         return asdict(self) | {"sentences": self.sentences()}
@@ -79,7 +95,7 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     ----------
     problem : a problem with data
     seed : seed of the draws
-    draws : number of prior draws
+    draws : number of prior draws; with very many data fewer are made, and the result says how many
 
     Raises
     ------
@@ -88,13 +104,23 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     """
     observables = problem.observables
     rng = np.random.default_rng([seed, 2])
-    simulated = problem.simulate(problem.draw_prior(rng, draws), rng)
-    usable = simulated[np.isfinite(simulated).all(axis=1)]
+    observed = np.asarray(problem.observed)
+    draws = min(draws, max(FEWEST_DRAWS, MOST_NUMBERS // len(observed)))
+    theta = problem.draw_prior(rng, draws)
+    step = max(1, NUMBERS_AT_A_TIME // len(observed))
+    simulated = np.concatenate(
+        [problem.simulate(theta[i : i + step], rng) for i in range(0, len(theta), step)]
+    )
+    finite = np.isfinite(simulated).all(axis=1)
+    usable = simulated if finite.all() else simulated[finite]
     if len(usable) == 0:
         raise InputError(f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}")
-    quantiles = np.quantile(usable, [0.05, 0.5, 0.95], axis=0)
-    observed = np.asarray(problem.observed)
-    below = (usable < observed).mean(axis=0)
+    quantiles, below = np.empty((3, len(observed))), np.empty(len(observed))
+    width = max(1, NUMBERS_AT_A_TIME // len(usable))
+    for start in range(0, len(observed), width):
+        part = slice(start, start + width)
+        quantiles[:, part] = np.quantile(usable[:, part], [0.05, 0.5, 0.95], axis=0)
+        below[part] = (usable[:, part] < observed[part]).mean(axis=0)
     names = np.repeat(observables, problem.conditions.n_rows).tolist()
     rows = tuple(
         PredictedRow(label, name, *(float(v) for v in (observed[i], *quantiles[:, i], below[i])))

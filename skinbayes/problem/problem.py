@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,15 +18,16 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
 from skinbayes.forward.base import Progress
+from skinbayes.problem import quantities
+from skinbayes.problem.alike import DistinctRows, distinct_rows
 from skinbayes.problem.batches import as_batch, unbatch
 from skinbayes.problem.covariates import apply_covariates, factor_key
-from skinbayes.problem.failures import explained, impossible, without_underflow
+from skinbayes.problem.failures import FAILED, explained, impossible
 from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.ranges import input_ranges
-from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.groups import CrossedGroups
 
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
     from skinbayes.problem.target import PosteriorTarget
 
-_FAILED = "the forward model cannot be evaluated"
+
+MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
 
 
 @dataclass(frozen=True)
@@ -223,17 +225,8 @@ class Problem:
             factor and covariates that act on them. Effects of groups are those of the median group, 0.
         """
         batch, single = self._batch(theta)
-        rows = conditions or self.conditions
-        tables = self.tables
-        if conditions is not None:
-            curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, conditions, self.spec.path)
-            tables = replace(tables, flow_curves=curves)
-        predicted = self.evaluate(self.inputs(batch, conditions), tables)
-        shape = (batch.shape[0], rows.n_rows)
-        return {
-            name: unbatch(without_underflow(np.broadcast_to(value, shape)), single)
-            for name, value in predicted.items()
-        }
+        predicted = quantities.predicted(self, batch, conditions)
+        return {name: unbatch(value, single) for name, value in predicted.items()}
 
     def predict_data(self, theta: ArrayLike) -> FloatArray:
         """Predictions of all data, one observable after the other, shape ``(M,)`` or ``(B, M)``, SI."""
@@ -250,20 +243,7 @@ class Problem:
             ``(B, N)``, or ``(B, n)`` for a product that is defined for n of the rows.
         """
         batch, _ = self._batch(theta)
-        inputs = self.inputs(batch)
-        model = self.model
-        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
-            quantities = dict(model.derived(inputs, self.tables))
-            known = inputs | quantities
-            for name, block in self.spec.derived.items():
-                product = np.ones((1, 1))
-                for factor, power in block.product.items():
-                    product = product * np.asarray(known[factor]) ** power
-                chosen = self.conditions.matching(block.rows)
-                if not chosen.any():  # data of the user's own without such rows
-                    continue
-                quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
-        return {name: without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
+        return quantities.derived(self, batch)
 
     def explain(self, theta: ArrayLike, row: int | None = None) -> list[str]:
         """Sentences on why predictions at ``theta`` are missing or doubtful, at all rows or one; empty if there is nothing."""
@@ -274,18 +254,13 @@ class Problem:
         if row is not None:
             inputs = {n: v[:, [row]] if v.shape[1] > 1 else v for n, v in inputs.items()}
             tables = tables.at_row(row)
-        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
+        with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
             return self.forward.explain(inputs, tables)
 
     def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
         """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
         batch, _ = self._batch(theta)
-        if self.model.flags is None:
-            return {}
-        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
-            found = self.model.flags(self.inputs(batch), self.tables)
-        shape = (len(batch), self.conditions.n_rows)
-        return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
+        return quantities.flags(self, batch)
 
     def simulate(
         self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
@@ -318,17 +293,7 @@ class Problem:
 
     def profile(self, profile: Profile, theta: FloatArray, row: int = 0) -> tuple[FloatArray, FloatArray]:
         """A curve of the forward model at the conditions of one row: abscissa ``(K,)`` and ordinate ``(B, K)``."""
-        inputs = {
-            name: np.ascontiguousarray(
-                np.broadcast_to(value, (value.shape[0], self.conditions.n_rows))[:, row]
-            )
-            for name, value in self.inputs(theta).items()
-        }
-        tables = self.tables.at_row(row)
-        with np.errstate(all="ignore"):
-            grid = profile.grid(inputs, tables)
-            curve = profile.evaluate(inputs, tables, grid)
-        return grid, np.array(np.broadcast_to(curve, (len(theta), len(grid))))
+        return quantities.profile(self, profile, theta, row)
 
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
         """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""
@@ -368,22 +333,54 @@ class Problem:
         batch, _ = self._batch(theta)
         return self._likelihood.width(batch)[0]
 
-    def scatter_covariance(self, theta: FloatArray) -> FloatArray:
-        """Covariance of what scatters, group effects included, at one parameter vector ``(D,)``, shape ``(M, M)``."""
-        return self._likelihood.covariance(theta)
+    def independent_scatter(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
+        """Changes of what scatters as numbers that scatter independently, with width 1.
+
+        Parameters
+        ----------
+        theta : one parameter vector ``(D,)``, SI
+        changes : of the data, on the scale on which they scatter, shape ``(B, M)``
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, M + G)`` with G effects of groups: the inner products are those of the changes with the inverse of the
+            covariance of the data between them.
+        """
+        return self._likelihood.independent(theta, changes)
 
     @property
     def noise_is_logarithmic(self) -> NDArray[np.bool_]:
         """Whether it is ln of a datum that scatters, for each datum, shape ``(M,)``."""
         return np.repeat([o.noise.logarithmic for o in self.observations], self.conditions.n_rows)
 
+    @cached_property
+    def alike(self) -> DistinctRows | None:
+        """Rows of the data that the forward model need not tell apart; None if all differ."""
+        return distinct_rows(self._plan, self.conditions, self.tables, self.input_spread)
+
+    @property
+    def costly(self) -> bool:
+        """Whether a likelihood takes so long that fewer walkers are better: a costly forward model, or very many rows."""
+        return self.forward.costly or self.conditions.n_rows >= MANY_ROWS
+
     def evaluate(
-        self, inputs: Mapping[str, FloatArray], tables: Tables | None = None
+        self,
+        inputs: Mapping[str, FloatArray],
+        tables: Tables | None = None,
+        alike: DistinctRows | None = None,
     ) -> dict[str, FloatArray]:
-        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them."""
-        model = self.model
-        with explained(self.spec.path, _FAILED), np.errstate(all="ignore"):
-            predicted = dict(model.evaluate(inputs, self.tables if tables is None else tables))
+        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them.
+
+        Rows that are ``alike`` are evaluated once.
+        """
+        tables = self.tables if tables is None else tables
+        with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
+            if alike is None:
+                predicted = dict(self.model.evaluate(inputs, tables))
+            else:
+                distinct = self.model.evaluate(alike.of_inputs(inputs), alike.of_tables(tables))
+                predicted = {name: alike.at_rows(values) for name, values in distinct.items()}
         for name in self.spec.observables:
             for key in ("discrepancy_factor", f"discrepancy_factor[{name}]", factor_key(name)):
                 if key in inputs:

@@ -20,10 +20,26 @@ from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise_families import noise_family
 from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 
+MOST_ROWS = 10_000
+"""Rows that a problem may have: so many were run, in less than a gigabyte (benchmarks/rows.py)."""
+
+
+MOST_LEVELS = 1_000
+"""Levels of a column whose rows may share an effect: so many were run."""
+
+
+def _check_count(path: object, count: int) -> None:
+    if count > MOST_ROWS:
+        raise InputError(
+            f"{path}: {count} rows; expected at most {MOST_ROWS}, with which the time and memory of a fit were measured: average "
+            "neighbouring rows, or take a part of them"
+        )
+
 
 def user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Conditions:
     """Rows of a CSV of the user's; :class:`InputError` if none of its columns is an input of the forward model."""
     dataset = load_dataset(path)
+    _check_count(path, dataset.n_rows)
     rows = _columns(dataset, set(forward.input_names()), covariate_columns(spec.covariates, dataset))
     if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
         raise InputError(
@@ -56,6 +72,7 @@ def data_rows(
 
     Raises :class:`InputError` for observables that are not predicted, not in the data, or impossible for their noise.
     """
+    _check_count(dataset.path, dataset.n_rows)
     covariates = covariate_columns(spec.covariates, dataset)
     rows = _columns(dataset, set(forward.input_names()) - taken, covariates)
     return rows, tuple(_observation(spec, forward, dataset, name) for name in spec.observables)
@@ -144,6 +161,11 @@ def crossed_groups(spec: ModelSpec, rows: Conditions) -> CrossedGroups | None:
             raise InputError(f"{spec.path}: groups.{column}: the data have no column '{column}'")
         labels[column] = rows.labels[column]
         levels = len(set(labels[column].tolist()))
+        if levels > MOST_LEVELS:
+            raise InputError(
+                f"{spec.path}: groups.{column}: the data have {levels} of them; expected at most {MOST_LEVELS}, with which time "
+                "and memory were measured"
+            )
         if levels < 2:
             raise InputError(
                 f"{spec.path}: groups.{column}: all rows have the same {column}; effects need at least two"

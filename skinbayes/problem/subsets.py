@@ -1,9 +1,10 @@
-"""A problem without some of its rows."""
+"""A problem with some of its rows."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.problem.alike import kinds
 from skinbayes.problem.inputs import Conditions
 from skinbayes.statistics.groups import CrossedGroups
 
@@ -81,6 +83,40 @@ def without_level(problem: Problem, column: str, level: str) -> Problem:
         tables=tables,
     )
     # prepared for the ranges of all rows, so also for these
+    reduced.__dict__["model"] = problem.model
+    return reduced
+
+
+def one_row_of_each_level(problem: Problem) -> Problem:
+    """The problem with one row for each combination of levels of its grouping columns, to evaluate what rows share.
+
+    It has no observations: it serves quantities that are the same for all rows of a level.
+
+    Parameters
+    ----------
+    problem : any problem
+
+    Examples
+    --------
+    >>> from skinbayes.problem import load_problem
+    >>> one_row_of_each_level(load_problem("forearm-glass")).conditions.n_rows
+    2
+    """
+    rows, tables = problem.conditions, problem.tables
+    _, first = np.unique(kinds(list(rows.labels.values()), rows.n_rows), return_index=True)
+    keep = np.zeros(rows.n_rows, dtype=bool)
+    keep[first] = True
+    if tables.flow_curves is not None:
+        tables = replace(tables, flow_curves=tuple(compress(tables.flow_curves, keep)))
+    rows = _kept_rows(rows, keep)
+    reduced = replace(
+        problem,
+        conditions=rows,
+        observations=(),
+        input_spread={},
+        groups=None,
+        tables=tables,
+    )
     reduced.__dict__["model"] = problem.model
     return reduced
 

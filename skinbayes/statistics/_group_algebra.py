@@ -114,13 +114,19 @@ class ConditionedEffects:
 
 
 def condition_effects(
-    normal: FloatArray, projection: FloatArray, scale: FloatArray, eliminated: slice
+    own: FloatArray,
+    between: FloatArray,
+    among: FloatArray,
+    projection: FloatArray,
+    scale: FloatArray,
+    eliminated: slice,
 ) -> ConditionedEffects:
     """Distribution of the effects given data.
 
     Parameters
     ----------
-    normal : Zᵀ W⁻¹ Z, shape ``(B, G, G)``, 1/unit²
+    own, between, among : blocks of Zᵀ W⁻¹ Z, 1/unit²: the diagonal of the eliminated column, shape ``(B, E)``, its block with
+        the others, ``(B, E, R)``, and that of the others, ``(B, R, R)``
     projection : Zᵀ W⁻¹ r, shape ``(B, G)``, 1/unit
     scale : standard deviation of each effect, shape ``(B, G)``, unit
     eliminated : place of the column that is eliminated by division
@@ -128,12 +134,9 @@ def condition_effects(
     size = scale.shape[1]
     kept = np.delete(np.arange(size), eliminated)
     outer, inner = scale[:, eliminated], np.take(scale, kept, axis=1)
-    column = normal[:, :, eliminated]
-    pivots = 1.0 + outer**2 * np.diagonal(column[:, eliminated], axis1=1, axis2=2)
-    others = np.take(normal, kept, axis=1)
-    between = np.swapaxes(others[:, :, eliminated], 1, 2)
+    pivots = 1.0 + outer**2 * own
     coupling = np.ascontiguousarray(outer[:, :, None] * between * inner[:, None, :])
-    complement = inner[:, :, None] * np.take(others, kept, axis=2) * inner[:, None, :]
+    complement = inner[:, :, None] * among * inner[:, None, :]
     diagonal = np.arange(len(kept))
     complement[:, diagonal, diagonal] += 1.0
     halved = coupling / np.sqrt(pivots)[:, :, None]

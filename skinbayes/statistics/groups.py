@@ -250,6 +250,37 @@ class CrossedGroups:
         mean[bad], covariance[bad] = nan, nan
         return mean, covariance
 
+    def independent(self, residual: ArrayLike, width: ArrayLike, scales: ArrayLike) -> FloatArray:
+        """Residuals as numbers that scatter independently with width 1: R Rᵀ = r Σ⁻¹ rᵀ, the terms of the sum of squares above.
+
+        Parameters
+        ----------
+        residual, width, scales : see the class
+
+        Returns
+        -------
+        R, shape ``(B, N + G)``, dimensionless; NaN for impossible input
+
+        Raises
+        ------
+        InputError
+            if the shapes do not fit
+
+        Examples
+        --------
+        >>> groups = CrossedGroups.of_labels({"subject": np.array(["x", "x", "y"])})
+        >>> found = groups.independent(np.array([[0.3, 0.1, -0.2]]), 0.1, 0.2)
+        >>> float((found @ found.T)[0, 0].round(6))
+        3.688889
+        """
+        data = self._data(residual, width, scales)
+        with np.errstate(all="ignore"):
+            effects = self._effects(data)
+            own = (data.residual - self.at_rows(effects.mean)) / data.width
+            found = np.concatenate([own, effects.centre], axis=-1)
+        found[~(data.possible & effects.sound)] = nan
+        return found
+
     def draw_effects(
         self, rng: np.random.Generator, residual: ArrayLike, width: ArrayLike, scales: ArrayLike
     ) -> FloatArray:
@@ -319,12 +350,23 @@ class CrossedGroups:
         return CellSums.of(self.member, np.arange(self.n_effects))
 
     @cached_property
-    def _pair_sums(self) -> CellSums:
-        """Sums over the rows of each pair of levels, (G, G); each pair is summed once, smaller number first."""
+    def _pair_sums(self) -> tuple[CellSums, CellSums]:
+        """Sums over the rows of each pair of levels: eliminated with others, and others with others; each pair is summed once."""
         size, columns = self.n_effects, range(len(self.columns))
-        rows = [self.member[c] * size + self.member[d] for c in columns for d in columns[c:]]
-        first, second = np.indices((size, size))
-        return CellSums.of(np.array(rows), np.minimum(first, second) * size + np.maximum(first, second))
+        rows = np.array([self.member[c] * size + self.member[d] for c in columns for d in columns[c:]])
+        place = np.arange(size)
+        others = np.delete(place, self._eliminated)
+        between, among = (
+            np.minimum(first, others) * size + np.maximum(first, others)
+            for first in (place[self._eliminated, np.newaxis], others[:, np.newaxis])
+        )
+        return CellSums.of(rows, between), CellSums.of(rows, among)
+
+    @property
+    def matrix_size(self) -> int:
+        """Numbers in the matrices that one parameter vector needs."""
+        eliminated = len(range(*self._eliminated.indices(self.n_effects)))
+        return (self.n_effects - eliminated) * self.n_effects
 
     @cached_property
     def _eliminated(self) -> slice:
@@ -336,9 +378,10 @@ class CrossedGroups:
 
     def _effects(self, data: GroupData, weight: FloatArray | None = None) -> ConditionedEffects:
         weight = data.weight if weight is None else weight
-        normal = self._pair_sums(weight)
+        between, among = (sums(weight) for sums in self._pair_sums)
+        own = self._level_sums(weight)[:, self._eliminated]
         projection = self._level_sums(weight * data.residual)
-        return condition_effects(normal, projection, data.scale, self._eliminated)
+        return condition_effects(own, between, among, projection, data.scale, self._eliminated)
 
     def _log_density(self, data: GroupData, rows: NDArray[np.bool_] | None = None) -> FloatArray:
         """Joint log-density of all rows, or of those marked."""
