@@ -81,7 +81,7 @@ def fit(
         if problem.observations:
             with counted_progress("building the table") as count:
                 problem.prepare(count, cores)
-        with sampling_progress(ess) as progress:
+        with sampling_progress() as progress:
             result = sample(
                 problem, seed=seed, ess=ess, cores=cores, directory=directory, resume=resume, progress=progress,
                 max_steps=max_steps,
