@@ -32,7 +32,9 @@ def sampling_progress(what: str = "sampling") -> Iterator[Callable[[Progress], N
     from rich.progress import TextColumn, TimeElapsedColumn
     from rich.table import Column
 
-    one_line = TextColumn("{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1))
+    one_line = TextColumn(
+        "{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1)
+    )
     with Bar(one_line, TimeElapsedColumn(), console=terminal, transient=True, expand=True) as bar:
         task = bar.add_task(f"{what}: starting", total=None)
 

@@ -42,7 +42,10 @@ def _shared(problem: Problem, chains: Chains, seed: int) -> dict[str, FloatArray
         return {}
     theta = problem.target().transform.inverse(thinned(chains))
     effects = problem.draw_effects(theta, np.random.default_rng([seed, 6]))
-    return {f"the effect of {column}": effects[:, groups.effects_of(column)].mean(axis=1) for column in groups.columns}
+    return {
+        f"the effect of {column}": effects[:, groups.effects_of(column)].mean(axis=1)
+        for column in groups.columns
+    }
 
 
 def _because(found: Cause, chains: Chains) -> str:
@@ -58,7 +61,11 @@ def _because(found: Cause, chains: Chains) -> str:
             "the two together, not each."
         )
     tau = float(chains.report.tau[chains.names.index(name)])
-    time = f"{tau:.0f} steps" if np.isfinite(tau) else f"over {(chains.steps - chains.report.burn_in) // 10} steps"
+    time = (
+        f"{tau:.0f} steps"
+        if np.isfinite(tau)
+        else f"over {(chains.steps - chains.report.burn_in) // 10} steps"
+    )
     return f"Cause: the run is short for {name}, whose autocorrelation time is {time}."
 
 
@@ -66,7 +73,8 @@ def _remedy(found: Cause, steps: int, steps_needed: int | None) -> str:
     more = max(steps_needed or 0, 2 * steps)
     longer = f"--resume --max-steps {ceil(more / 1000) * 1000}"
     if found.apart:
-        return f"What to do: fit with other seeds; if both places remain, a tighter prior on {found.slowest} decides between them."
+        tighter = f"a tighter prior on {found.slowest}"
+        return f"What to do: fit with other seeds; if both places remain, {tighter} decides between them."
     if found.partner is not None:
         other = found.partner.removeprefix("the effect of ")
         whose = f"the scale of the groups of {other}" if other != found.partner else found.partner

@@ -33,9 +33,9 @@ class PosteriorTarget:
     """Posterior density in unconstrained coordinates: log for positive parameters, logit for bounded ones.
 
     Where groups share effects on ln of the data, bounded positive parameters are logarithms with walls instead. Levels of a
-    parameter and the effects of a group exchange a factor: all of them together are known as badly as the effects, their ratios as
-    well as the data. That ridge is straight in logarithms. Logits bend it towards the bounds, differences between walkers in the
-    middle no longer point along it, and walkers in its tails stay there for thousands of steps.
+    parameter and the effects of a group exchange a factor: together they are known as badly as the effects, their ratios as well
+    as the data. That ridge is straight in logarithms. Logits bend it towards the bounds: differences of walkers in the middle
+    no longer point along it, and walkers in its tails stay there for thousands of steps.
 
     Attributes
     ----------

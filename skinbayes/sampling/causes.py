@@ -23,7 +23,8 @@ class Cause:
     Attributes
     ----------
     slowest : the coordinate that is known worst
-    apart, walkers : walkers that never came near the rest in ``slowest``, the fewer of two kinds, and all walkers; 0 if ranges overlap
+    apart : walkers whose values of ``slowest`` never met those of the others, the fewer of two kinds
+    walkers : of all ensembles together
     partner, correlation : the quantity that ``slowest`` moves with most, and their rank correlation; None below :data:`RIDGE`
     """
 
@@ -37,9 +38,13 @@ class Cause:
 def slowest(chains: Chains) -> int:
     """Place of the coordinate that is known worst: over its limits by R-hat of ensembles, of walkers, then by autocorrelation."""
     report = chains.report
-    between, single = (np.nan_to_num(r, nan=np.inf, posinf=np.inf) for r in (report.r_hat, report.walker_r_hat))
+    between, single = (
+        np.nan_to_num(r, nan=np.inf, posinf=np.inf) for r in (report.r_hat, report.walker_r_hat)
+    )
     # disagreement that sampling would not explain comes first
-    return int(np.lexsort((np.nan_to_num(report.tau, nan=np.inf), single, np.where(between > 1.1, between, 0.0)))[-1])
+    return int(
+        np.lexsort((np.nan_to_num(report.tau, nan=np.inf), single, np.where(between > 1.1, between, 0.0)))[-1]
+    )
 
 
 def thinned(chains: Chains) -> FloatArray:

@@ -99,7 +99,11 @@ class Progress:
     def _sentences(self) -> list[str]:
         """The same said ever shorter."""
         report, phase = self.report, self.phase
-        far = f"{self.far_walkers} of {self.walkers} walkers still far from the others" if self.far_walkers else ""
+        far = (
+            f"{self.far_walkers} of {self.walkers} walkers still far from the others"
+            if self.far_walkers
+            else ""
+        )
         again = f"judged again at {self.next_check} steps"
         if report is None:
             return [far] if far else [f"starting, first judged after {self.next_check} steps", "starting"]
@@ -119,7 +123,12 @@ class Progress:
                 brief = f"ensembles differ in {name} (R-hat {apart})"
             if far:
                 return [f"settling: {far}; {whole}", f"settling: {far}", far]
-            return [f"settling: {whole}; {again}", f"settling: {whole}", f"settling: {brief}", f"R-hat {apart}: {name}"]
+            return [
+                f"settling: {whole}; {again}",
+                f"settling: {whole}",
+                f"settling: {brief}",
+                f"R-hat {apart}: {name}",
+            ]
         collected = far or max(_shortfalls(report, self.options))[1]
         return [f"found; {collected}{self._to_go()}", f"found; {collected}", collected]
 
@@ -171,4 +180,7 @@ def _shortfalls(report: StoppingReport, options: SamplerOptions) -> Iterator[tup
     if isfinite(value):
         # what single walkers differ by falls as one over their length
         share = (value**2 - 1.0) / (WALKER_R_HAT**2 - 1.0)
-        yield share, f"walkers still differ in {report.names[walker]} (R-hat {_r_hat(value)} of {WALKER_R_HAT})"
+        yield (
+            share,
+            f"walkers still differ in {report.names[walker]} (R-hat {_r_hat(value)} of {WALKER_R_HAT})",
+        )

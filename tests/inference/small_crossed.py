@@ -1,4 +1,4 @@
-"""Small crossed designs of people and sites with simulated friction, and their posteriors computed without the package's sampler."""
+"""Small crossed designs of people and sites with simulated friction, and their posteriors without the package's sampler."""
 
 from __future__ import annotations
 
@@ -105,7 +105,9 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
     theta = problem.draw_prior(rng, count)
     labels = problem.conditions.labels
     y = np.log(problem.observed)
-    cell = np.unique(np.stack([labels["person"], labels["body_site"]]), axis=1, return_inverse=True)[1].ravel()
+    cell = np.unique(np.stack([labels["person"], labels["body_site"]]), axis=1, return_inverse=True)[
+        1
+    ].ravel()
     within = y - np.array([y[cell == c].mean() for c in cell])
     freedom = y.size - len(set(cell.tolist()))
     middle, width = 0.5 * np.log(within @ within / freedom), 1.5 / np.sqrt(2.0 * freedom)
@@ -120,7 +122,11 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
     data = y - np.log(problem.predict(known)["friction_coefficient"]) + np.log(10e6)
     levels = [name.partition("[")[2].rstrip("]") for name in (names[i] for i in stress)]
     column = next((labels[c] for c in labels if set(levels) <= set(labels[c].tolist())), None)
-    design = np.ones((y.size, 1)) if column is None else np.stack([column == v for v in levels], axis=1).astype(float)
+    design = (
+        np.ones((y.size, 1))
+        if column is None
+        else np.stack([column == v for v in levels], axis=1).astype(float)
+    )
     drawn = np.empty((count, len(stress)))
     for some in np.array_split(np.arange(count), max(1, count // 2000)):
         covariance = theta[some, noise, None, None] ** 2 * np.eye(y.size)
