@@ -11,8 +11,10 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.problem.funnels import funnels_of
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
+from skinbayes.statistics.funnels import FunnelTransform
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 
 if TYPE_CHECKING:
@@ -28,6 +30,9 @@ DISPERSION = 0.25
 """Power of the likelihood at which starts led towards the posterior are left: twice as wide as it."""
 
 
+LOGARITHM = Transform("log", 0.0, inf)
+
+
 @dataclass(frozen=True)
 class PosteriorTarget:
     """Posterior density in unconstrained coordinates: log for positive parameters, logit for bounded ones.
@@ -35,7 +40,8 @@ class PosteriorTarget:
     Where groups share effects on ln of the data, bounded positive parameters are logarithms with walls instead. Levels of a
     parameter and the effects of a group exchange a factor: together they are known as badly as the effects, their ratios as well
     as the data. That ridge is straight in logarithms. Logits bend it towards the bounds: differences of walkers in the middle
-    no longer point along it, and walkers in its tails stay there for thousands of steps.
+    no longer point along it, and walkers in its tails stay there for thousands of steps. Where a parameter differs by the very
+    levels that have effects, the funnel between it and the scale of the effects is straightened too.
 
     Attributes
     ----------
@@ -64,7 +70,9 @@ class PosteriorTarget:
         supports = [p.prior.support for p in self.problem.free if p.prior]
         if self.problem.groups is None or not self.problem.noise_is_logarithmic.all():
             return VectorTransform.for_supports(supports)
-        return VectorTransform(tuple(_with_walls(support) for support in supports))
+        transforms = tuple(_with_walls(support) for support in supports)
+        funnels = funnels_of(self.problem, tuple(t == LOGARITHM for t in transforms))
+        return FunnelTransform(transforms, funnels) if funnels else VectorTransform(transforms)
 
     @cached_property
     def _density(self) -> LogDensity:
@@ -120,4 +128,4 @@ class PosteriorTarget:
 def _with_walls(support: tuple[float, float]) -> Transform:
     """Logarithms of a bounded positive parameter, the usual coordinates of others."""
     lower, upper = support
-    return Transform("log", 0.0, inf) if lower >= 0.0 and isfinite(upper) else transform_for(support)
+    return LOGARITHM if lower >= 0.0 and isfinite(upper) else transform_for(support)

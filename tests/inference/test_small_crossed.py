@@ -22,7 +22,7 @@ DESIGNS = {
     "2x3, flat scale": Crossed(2, 3, groups={"person": "uniform = [0, 3]"}),
     "2x3, lognormal scale": Crossed(2, 3, groups={"person": "lognormal = [0.3, 0.7]"}),
     "2x3, two groups": Crossed(2, 3, by=None, groups=SITE_AND_PERSON),
-    "2x2, levels and two groups": Crossed(2, 2, groups=SITE_AND_PERSON),
+    "2x3, levels and two groups": Crossed(2, 3, groups=SITE_AND_PERSON),
     "2x3, by person and effects of people": Crossed(2, 3, by="person"),
     "2x3, uniform": Crossed(2, 3, stress='uniform = ["0.5 MPa", "500 MPa"]'),
     "2x3, little scatter": Crossed(2, 3, noise=0.01),
@@ -114,3 +114,35 @@ def test_progress_of_a_run_that_needs_more_draws_tells_the_time_to_go() -> None:
         assert progress.sentence().startswith("found; effective sample size ")
         assert progress.seconds_to_go is not None
         assert progress.steps_needed == pytest.approx(told[-1].steps, rel=0.5)
+
+
+def test_straightened_funnels_keep_the_density(tmp_path) -> None:
+    problem = Crossed(2, 3, groups=SITE_AND_PERSON).problem(tmp_path, seed=2)
+    target = problem.target()
+    (funnel,) = target.transform.funnels
+    assert [problem.names[i] for i in funnel.levels] == [
+        n for n in problem.names if n.startswith("frictional")
+    ]
+    assert problem.names[funnel.scale] == "group_scale[body_site]"
+    theta = problem.draw_prior(np.random.default_rng(3), 20)
+    place = target.transform.forward(theta)
+    np.testing.assert_allclose(target.transform.inverse(place), theta, rtol=1e-10)
+    assert np.array_equal(target.log_density(place), [target.log_density(row[None])[0] for row in place])
+    step = 1e-6
+    for row, claimed in zip(place, target.transform.log_jacobian(place), strict=True):
+        moves = step * np.eye(len(row))
+        jacobian = (target.transform.inverse(row + moves) - target.transform.inverse(row - moves)) / (
+            2 * step
+        )
+        assert claimed == pytest.approx(np.linalg.slogdet(jacobian)[1], abs=1e-6)
+    # the deviations are as wide in the neck as in the mouth
+    levels = list(funnel.levels)
+    for scale in (1e-3, 0.03, 0.5):
+        narrow = place.copy()
+        narrow[:, funnel.scale] = np.log(scale)
+        deviations = np.log(target.transform.inverse(narrow)[:, levels])
+        deviations -= deviations.mean(axis=1, keepdims=True) + np.array(funnel.centre)
+        coordinates = place[:, levels] - place[:, levels].mean(axis=1, keepdims=True)
+        np.testing.assert_allclose(
+            deviations, coordinates * np.hypot(scale, funnel.width), rtol=1e-6, atol=1e-9
+        )
