@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 QUIET_SECONDS = 15.0
 """Without a terminal one line is written each time this much time has passed."""
 
+SAMPLING = "sampling"
+"""What is going on unless something else is said."""
+
 CLOCK = 9
 """Characters that the time passed takes at the end of the line."""
 
 
 @contextmanager
-def sampling_progress(what: str = "sampling") -> Iterator[Callable[[Progress], None]]:
+def sampling_progress(what: str = SAMPLING) -> Iterator[Callable[[Progress], None]]:
     """Yield what to call after every block of steps; says how many there are and what is still missing, on one line."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
@@ -37,9 +40,10 @@ def sampling_progress(what: str = "sampling") -> Iterator[Callable[[Progress], N
     )
     with Bar(one_line, TimeElapsedColumn(), console=terminal, transient=True, expand=True) as bar:
         task = bar.add_task(f"{what}: starting", total=None)
+        before = "" if what == SAMPLING else f"{what}: "
 
         def update(progress: Progress) -> None:
-            counted = f"{what}: {progress.steps} steps, "
+            counted = f"{before}{progress.steps} steps, "
             room = terminal.width - len(counted) - CLOCK
             bar.update(task, description=counted + progress.sentence(room))
 

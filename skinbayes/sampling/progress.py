@@ -153,7 +153,7 @@ def duration(seconds: float) -> str:
 
 
 def _r_hat(value: float) -> str:
-    return f"{value:.1f}" if value >= 1.2 else f"{value:.2f}" if value >= 1.02 else f"{value:.3f}"
+    return f"{value:.1f}" if value >= 1.2 else f"{value:.2f}" if value >= 1.1 else f"{value:.3f}"
 
 
 def steps_needed(report: StoppingReport, options: SamplerOptions) -> int | None:

@@ -1,10 +1,10 @@
 """Coordinates without the funnel between the levels of a parameter and the scale of effects on the same levels.
 
 Where each level of a grouping column has a parameter of its own and an effect, ratios of the parameters are known as badly as the
-effects are wide: within their scale s, or within the scatter w of the data where s is smaller. Walkers would have to squeeze through
-the neck at small s. With the deviations of the logarithms from their mean, less what the data say if there are no effects,
-measured in √(s² + w²), neck and mouth are equally wide (Papaspiliopoulos, Roberts & Sköld 2007, doi 10.1214/088342307000000014).
-The density stays what it is: the Jacobian is exact, whatever the centre.
+effects are wide: within their scale s, or within the scatter w of the data where s is smaller. Walkers would have to squeeze
+through the neck at small s. With the deviations of the logarithms from their mean, less what the data say without effects,
+measured in √(s² + w²), neck and mouth are equally wide: a non-centred parametrisation about the data instead of the prior. The
+density stays what it is: the Jacobian is exact, whatever the centre.
 """
 
 from __future__ import annotations
