@@ -13,6 +13,9 @@ from skinbayes.sampling.convergence import rank_normalise
 RIDGE = 0.9
 """Rank correlation from which two quantities are said to lie on a ridge."""
 
+GAP = 3.0
+"""Standard deviations of a single walker that two kinds of walkers are apart at least."""
+
 _POSITIONS = 4000  # of all kept ones, enough for a correlation to 1 %
 
 
@@ -23,7 +26,7 @@ class Cause:
     Attributes
     ----------
     slowest : the coordinate that is known worst
-    apart : walkers whose values of ``slowest`` never met those of the others, the fewer of two kinds
+    apart : walkers that stay away from the others in ``slowest``, the fewer of two kinds
     walkers : of all ensembles together
     partner, correlation : the quantity that ``slowest`` moves with most, and their rank correlation; None below :data:`RIDGE`
     """
@@ -84,12 +87,16 @@ def cause(chains: Chains, shared: dict[str, FloatArray] | None = None) -> Cause:
 
 
 def _apart(values: FloatArray) -> int:
-    """Walkers, the fewer of two kinds, whose ranges never meet those of the others; values of shape (E, S, W)."""
-    low, high = values.min(axis=1).ravel(), values.max(axis=1).ravel()
-    order = np.argsort(low)
-    reached = np.maximum.accumulate(high[order])[:-1]
-    below = np.flatnonzero(low[order][1:] > reached) + 1
-    return int(max((min(count, len(low) - count) for count in below.tolist()), default=0))
+    """Walkers, the fewer of two kinds, beyond the widest gap between the medians of walkers; values of shape (E, S, W).
+
+    0 if the gap is not wide against what a walker covers and against the bulk of all of them.
+    """
+    medians = np.sort(np.median(values, axis=1).ravel())
+    gaps = np.diff(medians)
+    place = int(np.argmax(gaps))
+    bulk = np.median(np.abs(values - np.median(values)))
+    wide = gaps[place] > GAP * np.median(values.std(axis=1)) and gaps[place] > bulk
+    return min(place + 1, len(gaps) - place) if wide else 0
 
 
 def _correlation(one: FloatArray, other: FloatArray) -> float:

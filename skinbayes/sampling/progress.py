@@ -144,8 +144,8 @@ def duration(seconds: float) -> str:
 
     Examples
     --------
-    >>> duration(38.2), duration(150.0), duration(9000.0)
-    ('38 s', '3 min', '2.5 h')
+    >>> duration(38.2), duration(130.0), duration(9000.0)
+    ('38 s', '2 min', '2.5 h')
     """
     if seconds < 90.0:
         return f"{seconds:.0f} s"
