@@ -79,7 +79,7 @@ def fit(
     problem = load_problem(model, data=data)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     try:
-        with fit_progress(ess) as (count, progress):
+        with fit_progress() as (count, progress):
             result = sample(
                 problem, seed=seed, ess=ess, cores=cores, directory=directory, resume=resume, progress=progress,
                 preparing=count, max_steps=max_steps,

@@ -1,4 +1,4 @@
-"""The progress of a run on standard error: a bar on a terminal, a line now and then elsewhere."""
+"""The progress of a run on standard error: one changing line on a terminal, a line now and then elsewhere."""
 
 from __future__ import annotations
 
@@ -7,48 +7,43 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from skinbayes.cli.output import console, say
 
 if TYPE_CHECKING:
-    from skinbayes.sampling.ensembles import Progress
+    from skinbayes.sampling.progress import Progress
 
 QUIET_SECONDS = 15.0
 """Without a terminal one line is written each time this much time has passed."""
 
+SAMPLING = "sampling"
+"""What is going on unless something else is said."""
 
-YARDSTICK_ESS = 2000.0
-"""Effective sample size that yardsticks are sampled to, the default of ``sample``."""
+CLOCK = 9
+"""Characters that the time passed takes at the end of the line."""
 
 
 @contextmanager
-def sampling_progress(ess: float, what: str = "sampling") -> Iterator[Callable[[Progress], None]]:
-    """Yield what to call after every block of steps; shows steps and effective sample size reached of ``ess``."""
+def sampling_progress(what: str = SAMPLING) -> Iterator[Callable[[Progress], None]]:
+    """Yield what to call after every block of steps; says how many there are and what is still missing, on one line."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
-        yield _lines(ess, what)
+        yield _lines(what)
         return
-    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
+    from rich.progress import TextColumn, TimeElapsedColumn
+    from rich.table import Column
 
-    bar = Bar(
-        TextColumn(what),
-        BarColumn(),
-        TextColumn("{task.description}"),
-        TimeElapsedColumn(),
-        console=terminal,
-        transient=True,
+    one_line = TextColumn(
+        "{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1)
     )
-    with bar:
-        task = bar.add_task("starting", total=ess)
+    with Bar(one_line, TimeElapsedColumn(), console=terminal, transient=True, expand=True) as bar:
+        task = bar.add_task(f"{what}: starting", total=None)
+        before = "" if what == SAMPLING else f"{what}: "
 
         def update(progress: Progress) -> None:
-            reached = _reached(progress)
-            text = f"{progress.steps} steps" + (
-                "" if reached is None else f", effective sample size {reached:.0f} of {ess:.0f}"
-            )
-            bar.update(task, completed=min(reached or 0.0, ess), description=text)
+            counted = f"{before}{progress.steps} steps, "
+            room = terminal.width - len(counted) - CLOCK
+            bar.update(task, description=counted + progress.sentence(room))
 
         yield update
 
@@ -77,7 +72,7 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def fit_progress(ess: float) -> Iterator[tuple[Callable[[int, int], None], Callable[[Progress], None]]]:
+def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[Progress], None]]]:
     """Yield what to call while a table is built, and after every block of steps; one bar makes way for the other."""
     with ExitStack() as shown:
         count = shown.enter_context(counted_progress("building the table"))
@@ -86,7 +81,7 @@ def fit_progress(ess: float) -> Iterator[tuple[Callable[[int, int], None], Calla
         def update(progress: Progress) -> None:
             if not sampling:
                 shown.close()
-                sampling.append(shown.enter_context(sampling_progress(ess)))
+                sampling.append(shown.enter_context(sampling_progress()))
             sampling[0](progress)
 
         yield count, update
@@ -102,7 +97,7 @@ def yardstick_progress() -> Iterator[Callable[[str, Progress], None]]:
             if name not in current:
                 # the bar of the yardstick before makes way
                 shown.close()
-                current[name] = shown.enter_context(sampling_progress(YARDSTICK_ESS, f"yardstick {name}"))
+                current[name] = shown.enter_context(sampling_progress(f"yardstick {name}"))
             current[name](progress)
 
         yield update
@@ -120,19 +115,13 @@ def _counted_lines(what: str) -> Callable[[int, int], None]:
     return update
 
 
-def _lines(ess: float, what: str) -> Callable[[Progress], None]:
+def _lines(what: str) -> Callable[[Progress], None]:
     last = time.monotonic()
 
     def update(progress: Progress) -> None:
         nonlocal last
         if time.monotonic() - last >= QUIET_SECONDS:
             last = time.monotonic()
-            reached = _reached(progress)
-            size = "" if reached is None else f", effective sample size {reached:.0f} of {ess:.0f}"
-            say(f"{what}: {progress.steps} steps{size}", err=True)
+            say(f"{what}: {progress.steps} steps, {progress.sentence()}", err=True)
 
     return update
-
-
-def _reached(progress: Progress) -> float | None:
-    return None if progress.report is None else float(np.min(progress.report.ess_bulk))

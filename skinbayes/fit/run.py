@@ -17,14 +17,15 @@ from skinbayes.fit.references import references
 from skinbayes.fit.result import Fit
 from skinbayes.fit.run_directory import RunDirectory
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups
+from skinbayes.fit.verdict import verdict
 
 if TYPE_CHECKING:
     import xarray
 
     from skinbayes.problem import Problem
     from skinbayes.sampling.chains import Chains
-    from skinbayes.sampling.ensembles import Progress
     from skinbayes.sampling.options import SamplerOptions
+    from skinbayes.sampling.progress import Progress
 
 DEFAULT_SEED = 1
 """Seed when none is given: the same command gives the same draws."""
@@ -145,6 +146,8 @@ def _groups(problem: Problem, chains: Chains, seed: int) -> dict[str, xarray.Dat
 
 
 def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> dict[str, Any]:
+    from skinbayes.sampling.progress import steps_needed
+
     report = chains.report
     dataset = problem.dataset
     data: dict[str, Any] = {"fingerprint": problem.data_fingerprint}
@@ -174,7 +177,7 @@ def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> d
         "versions": _versions(),
         "sampling": {
             "converged": report.converged,
-            "verdict": report.sentence(),
+            "verdict": verdict(problem, chains, steps_needed(report, settings), settings.seed),
             "missing": list(report.missing),
             "seed": settings.seed,
             "ensembles": settings.ensembles,

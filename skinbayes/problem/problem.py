@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
     from skinbayes.problem.target import PosteriorTarget
 
-
 MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
 
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf, isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.problem.funnels import funnels_of
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
-from skinbayes.statistics.transforms import VectorTransform
+from skinbayes.statistics.funnels import FunnelTransform
+from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 
 if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
@@ -27,9 +30,18 @@ DISPERSION = 0.25
 """Power of the likelihood at which starts led towards the posterior are left: twice as wide as it."""
 
 
+LOGARITHM = Transform("log", 0.0, inf)
+
+
 @dataclass(frozen=True)
 class PosteriorTarget:
     """Posterior density in unconstrained coordinates: log for positive parameters, logit for bounded ones.
+
+    Where groups share effects on ln of the data, bounded positive parameters are logarithms with walls instead. Levels of a
+    parameter and the effects of a group exchange a factor: together they are known as badly as the effects, their ratios as well
+    as the data. That ridge is straight in logarithms. Logits bend it towards the bounds: differences of walkers in the middle
+    no longer point along it, and walkers in its tails stay there for thousands of steps. Where a parameter differs by the very
+    levels that have effects, the funnel between it and the scale of the effects is straightened too.
 
     Attributes
     ----------
@@ -47,13 +59,20 @@ class PosteriorTarget:
 
     @property
     def fingerprint(self) -> str:
-        """Digest of model, data, priors and version."""
-        return self.problem.fingerprint + ("" if self.use_likelihood else "-prior")
+        """Digest of model, data, priors and version, and of coordinates that are not the usual ones."""
+        supports = [p.prior.support for p in self.problem.free if p.prior]
+        walls = "" if self.transform == VectorTransform.for_supports(supports) else "-walls"
+        return self.problem.fingerprint + walls + ("" if self.use_likelihood else "-prior")
 
     @cached_property
     def transform(self) -> VectorTransform:
-        """Map between parameters in SI and the real space."""
-        return VectorTransform.for_supports([p.prior.support for p in self.problem.free if p.prior])
+        """Map between parameters in SI and the real space; the density is zero where it leads out of their support."""
+        supports = [p.prior.support for p in self.problem.free if p.prior]
+        if self.problem.groups is None or not self.problem.noise_is_logarithmic.all():
+            return VectorTransform.for_supports(supports)
+        transforms = tuple(_with_walls(support) for support in supports)
+        funnels = funnels_of(self.problem, tuple(t == LOGARITHM for t in transforms))
+        return FunnelTransform(transforms, funnels) if funnels else VectorTransform(transforms)
 
     @cached_property
     def _density(self) -> LogDensity:
@@ -104,3 +123,9 @@ class PosteriorTarget:
 
         only_prior = replace(self, use_likelihood=False).log_density
         return anneal(position[chosen], weight[chosen], beta, DISPERSION, only_prior, likelihood, rng)
+
+
+def _with_walls(support: tuple[float, float]) -> Transform:
+    """Logarithms of a bounded positive parameter, the usual coordinates of others."""
+    lower, upper = support
+    return LOGARITHM if lower >= 0.0 and isfinite(upper) else transform_for(support)

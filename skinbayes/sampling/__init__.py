@@ -1,8 +1,9 @@
 """Ensemble sampling of any target density: starts, moves, stopping rule and store. Knows nothing of skin."""
 
 from skinbayes.sampling.chains import Chains
-from skinbayes.sampling.ensembles import Progress, SamplingInterrupted, run_ensembles
+from skinbayes.sampling.ensembles import SamplingInterrupted, run_ensembles
 from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.progress import Progress
 from skinbayes.sampling.stopping import StoppingReport
 from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.target import Target

@@ -2,39 +2,24 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import Block
+from skinbayes.sampling.advance import Block, EnsembleState
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.progress import Progress
 from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
-from skinbayes.sampling.stragglers import gathered, last_gathering
+from skinbayes.sampling.stragglers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.workers import advancing
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a run is, told when it begins (or is taken up) and after every block.
-
-    Attributes
-    ----------
-    steps : steps of each ensemble so far
-    max_steps : where the run ends at the latest
-    report : the latest verdict of the stopping rule, None before the first
-    """
-
-    steps: int
-    max_steps: int
-    report: StoppingReport | None
 
 
 class SamplingInterrupted(KeyboardInterrupt):
@@ -90,6 +75,7 @@ def run_ensembles(
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
     states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
+    resumed, spent = len(rounds), 0.0
     try:
         with advancing(target, options, moves) as advance_all:
             while True:
@@ -97,12 +83,14 @@ def run_ensembles(
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
                     report = _judged(target, options, rounds)
                 if progress is not None:
-                    progress(Progress(steps, last, report))
+                    progress(_progress(steps, last, report, options, states, spent, len(rounds) - resumed))
                 if report is not None and (report.converged or steps >= last):
                     if store is not None:
                         store.complete()
                     return _chains(target, options, rounds, report)
+                started = time.perf_counter()
                 blocks = advance_all(states)
+                spent += time.perf_counter() - started
                 if store is not None:
                     store.append(blocks)
                 rounds.append(blocks)
@@ -139,6 +127,27 @@ def draw_identity(
         "sampler option block_steps": options.block_steps,
         "moves": f"{moves.__module__}.{moves.__qualname__}",
     }
+
+
+def _progress(
+    steps: int,
+    last: int,
+    report: StoppingReport | None,
+    options: SamplerOptions,
+    states: list[EnsembleState],
+    spent: float,
+    blocks: int,
+) -> Progress:
+    dimension = states[0].positions.shape[1]
+    return Progress(
+        steps=steps,
+        max_steps=last,
+        report=report,
+        options=options,
+        walkers=sum(len(state.positions) for state in states),
+        far_walkers=sum(int(left_behind(state.log_density, dimension).sum()) for state in states),
+        seconds_per_step=spent / (blocks * options.block_steps) if blocks else None,
+    )
 
 
 def _judged(target: Target, options: SamplerOptions, rounds: list[list[Block]]) -> StoppingReport:

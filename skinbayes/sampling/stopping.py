@@ -113,12 +113,15 @@ def is_check(steps: int, block_steps: int) -> bool:
     The sequence is rounded up to whole blocks and depends on the number of steps alone, so that an interrupted run
     stops where an uninterrupted one does.
     """
+    return next_check(steps - 1, block_steps) == steps
+
+
+def next_check(steps: int, block_steps: int) -> int:
+    """Steps after which the rule is applied for the first time after ``steps``."""
     check = FIRST_CHECK
-    while True:
-        rounded = ceil(check / block_steps) * block_steps
-        if rounded >= steps:
-            return rounded == steps
+    while (rounded := ceil(check / block_steps) * block_steps) <= steps:
         check = ceil(check * CHECK_GROWTH)
+    return rounded
 
 
 def judge(
@@ -205,7 +208,7 @@ def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) ->
         if not change <= TAU_CHANGE:
             yield f"the autocorrelation time of {name} is not stable: {change:+.0%} when longer lags are included"
     name, size = _largest(report, -report.ess_bulk / growth)
-    if not -size >= options.ess:
+    if tau < np.inf and not -size >= options.ess:
         yield f"the effective sample size of {name} is {-size:.0f}, {options.ess:.0f} is asked for"
     name, size = _largest(report, -report.ess_tail)
     if not -size >= TAIL_SHARE * options.ess:

@@ -1,0 +1,82 @@
+"""The verdict on a run in words: what is missing, why, and what to do about it."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from skinbayes.problem import Problem
+    from skinbayes.sampling.causes import Cause
+    from skinbayes.sampling.chains import Chains
+
+
+def verdict(problem: Problem, chains: Chains, steps_needed: int | None, seed: int) -> str:
+    """The sentence of the stopping rule; of a run that has not converged also the cause and the remedy.
+
+    Parameters
+    ----------
+    problem, chains : the problem and its run
+    steps_needed : steps in all that would be enough, None if that is unknown
+    seed : of the run
+    """
+    from skinbayes.sampling.causes import cause
+
+    said = chains.report.sentence()
+    if chains.converged:
+        return said
+    found = cause(chains, _shared(problem, chains, seed))
+    return f"{said} {_because(found, chains)} {_remedy(found, chains.steps, steps_needed)}"
+
+
+def _shared(problem: Problem, chains: Chains, seed: int) -> dict[str, FloatArray]:
+    """Effects of each group, averaged over its levels, at the positions that causes are looked for in."""
+    from skinbayes.sampling.causes import thinned
+
+    groups = problem.groups
+    if groups is None:
+        return {}
+    theta = problem.target().transform.inverse(thinned(chains))
+    effects = problem.draw_effects(theta, np.random.default_rng([seed, 6]))
+    return {
+        f"the effect of {column}": effects[:, groups.effects_of(column)].mean(axis=1)
+        for column in groups.columns
+    }
+
+
+def _because(found: Cause, chains: Chains) -> str:
+    name = found.slowest
+    if found.apart:
+        return (
+            f"Cause: {found.apart} of {found.walkers} walkers stay apart from the others in {name}: they are stuck, or the "
+            "posterior has two modes."
+        )
+    if found.partner is not None:
+        return (
+            f"Cause: a ridge between {name} and {found.partner} (rank correlation {found.correlation:.2f}): the data know "
+            "the two together, not each."
+        )
+    tau = float(chains.report.tau[chains.names.index(name)])
+    time = (
+        f"{tau:.0f} steps"
+        if np.isfinite(tau)
+        else f"over {(chains.steps - chains.report.burn_in) // 10} steps"
+    )
+    return f"Cause: the run is short for {name}, whose autocorrelation time is {time}."
+
+
+def _remedy(found: Cause, steps: int, steps_needed: int | None) -> str:
+    more = max(steps_needed or 0, 2 * steps)
+    longer = f"--resume --max-steps {ceil(more / 1000) * 1000}"
+    if found.apart:
+        tighter = f"a tighter prior on {found.slowest}"
+        return f"What to do: fit with other seeds; if both places remain, {tighter} decides between them."
+    if found.partner is not None:
+        other = found.partner.removeprefix("the effect of ")
+        whose = f"the scale of the groups of {other}" if other != found.partner else found.partner
+        return f"What to do: a tighter prior on {found.slowest} or on {whose}, or more steps with {longer}."
+    return f"What to do: more steps with {longer}."

@@ -1,0 +1,149 @@
+"""Small crossed designs of people and sites with simulated friction, and their posteriors without the package's sampler."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from skinbayes.problem import Problem, load_problem
+
+SITES = ("volar forearm", "dorsal forearm", "palm", "fingertip", "cheek", "thigh")
+WEAK = 'loguniform = ["0.5 MPa", "500 MPa"]'
+MODEL = """
+format = 1
+title = "Small crossed design"
+forward = "friction"
+[data]
+file = "{name}.csv"
+observable = "friction_coefficient"
+[surface]
+name = "paper_reference"
+[parameters]
+young_modulus_layer = "750 MPa"
+young_modulus_bulk = {{ lognormal = ["20 kPa", 0.35] }}
+layer_thickness = "20 um"
+yield_stress = {{ lognormal = ["50 MPa", 0.5] }}
+{stress}
+{groups}
+[noise]
+family = "lognormal"
+noise_scale = {{ half_normal = 0.3 }}
+"""
+
+
+@dataclass(frozen=True)
+class Crossed:
+    """A design, how its data are made, and its priors.
+
+    Attributes
+    ----------
+    people, sites : numbers of levels
+    by : column by which the shear stress differs, or None
+    groups : columns with effects to the prior of their scale
+    stress : prior of the shear stress
+    loads : of each person at each site, in mN
+    noise : scatter of ln of friction
+    """
+
+    people: int
+    sites: int
+    by: str | None = "body_site"
+    groups: dict[str, str] = field(default_factory=lambda: {"person": "half_normal = 0.5"})
+    stress: str = WEAK
+    loads: tuple[int, ...] = (200, 500, 1000, 2000)
+    noise: float = 0.08
+
+    def problem(self, folder: Path, seed: int) -> Problem:
+        """The design with data made from ``seed``."""
+        rng = np.random.default_rng(seed)
+        person, site = rng.normal(0.0, 0.3, self.people), rng.normal(0.0, 0.3, self.sites)
+        lines = ["person,body_site,normal_force [mN],sphere_radius [mm],friction_coefficient [1]"]
+        for i in range(self.people):
+            for j in range(self.sites):
+                for load in self.loads:
+                    friction = 0.6 * np.exp(person[i] + site[j] + self.noise * rng.normal())
+                    lines.append(f"P{i},{SITES[j]},{load},8,{friction:.4f}")
+        levels = {"person": [f"P{i}" for i in range(self.people)], "body_site": SITES[: self.sites]}
+        if self.by is None:
+            stress = f"frictional_shear_stress = {{ {self.stress} }}"
+        else:
+            table = "".join(f'"{level}" = {{ {self.stress} }}\n' for level in levels[self.by])
+            stress = f'[parameters.frictional_shear_stress]\nby = "{self.by}"\n{table}'
+        groups = "".join(f"[groups.{c}]\nscale = {{ {prior} }}\n" for c, prior in self.groups.items())
+        (folder / "crossed.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        path = folder / "crossed.toml"
+        path.write_text(MODEL.format(name="crossed", stress=stress, groups=groups), encoding="utf-8")
+        return load_problem(path)
+
+
+@dataclass(frozen=True)
+class Weighted:
+    """Weighted draws ``(n, D)`` of the posterior, SI."""
+
+    draws: np.ndarray
+    weights: np.ndarray
+
+    @property
+    def effective_size(self) -> float:
+        """1 / Σ w²."""
+        return float(1.0 / np.square(self.weights).sum())
+
+
+def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_000) -> Weighted:
+    """Posterior by importance sampling in which all shear stresses are exact given the other parameters.
+
+    ln of friction is ln of shear stress + ln g(other parameters) + effects + scatter. With the other parameters drawn – the
+    scales and the skin from their priors, the scatter about the residuals of cells – the logarithms of the shear stresses are
+    those of a linear regression with known covariance: normal, but for their prior. Nothing is shared with the coordinates, the
+    starts and the moves of the sampler, nor with the algebra of the groups; only predictions and priors are.
+    """
+    names = problem.names
+    stress = [i for i, name in enumerate(names) if name.startswith("frictional_shear_stress")]
+    noise = names.index("noise_scale")
+    theta = problem.draw_prior(rng, count)
+    labels = problem.conditions.labels
+    y = np.log(problem.observed)
+    cell = np.unique(np.stack([labels["person"], labels["body_site"]]), axis=1, return_inverse=True)[
+        1
+    ].ravel()
+    within = y - np.array([y[cell == c].mean() for c in cell])
+    freedom = y.size - len(set(cell.tolist()))
+    middle, width = 0.5 * np.log(within @ within / freedom), 1.5 / np.sqrt(2.0 * freedom)
+    log_noise = middle + width * rng.standard_t(5, size=count)
+    theta[:, noise] = np.exp(log_noise)
+    prior = {p.label: p.prior for p in problem.free}
+    weight = prior["noise_scale"].log_density(theta[:, noise]) + log_noise
+    weight += 3.0 * np.log1p(np.square((log_noise - middle) / width) / 5.0)
+
+    known = theta.copy()
+    known[:, stress] = 10e6
+    data = y - np.log(problem.predict(known)["friction_coefficient"]) + np.log(10e6)
+    levels = [name.partition("[")[2].rstrip("]") for name in (names[i] for i in stress)]
+    column = next((labels[c] for c in labels if set(levels) <= set(labels[c].tolist())), None)
+    design = (
+        np.ones((y.size, 1))
+        if column is None
+        else np.stack([column == v for v in levels], axis=1).astype(float)
+    )
+    drawn = np.empty((count, len(stress)))
+    for some in np.array_split(np.arange(count), max(1, count // 2000)):
+        covariance = theta[some, noise, None, None] ** 2 * np.eye(y.size)
+        for name in (n for n in names if n.startswith("group_scale")):
+            member = labels[name.partition("[")[2].rstrip("]")]
+            covariance += theta[some, names.index(name), None, None] ** 2 * (member[:, None] == member)
+        precision = np.linalg.inv(covariance)
+        normal = design.T @ precision @ design
+        projected = np.einsum("nk,bnm,bm->bk", design, precision, data[some])
+        best = np.linalg.solve(normal, projected[..., None])[..., 0]
+        left = data[some] - best @ design.T
+        weight[some] -= 0.5 * np.einsum("bn,bnm,bm->b", left, precision, left)
+        weight[some] -= 0.5 * (np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(normal)[1])
+        root = np.linalg.cholesky(np.linalg.inv(normal))
+        drawn[some] = best + np.einsum("bkl,bl->bk", root, rng.standard_normal(best.shape))
+    theta[:, stress] = np.exp(drawn)
+    for i in stress:
+        weight += prior[names[i]].log_density(theta[:, i]) + np.log(theta[:, i])
+    shares = np.exp(weight - weight.max())
+    return Weighted(theta, shares / shares.sum())

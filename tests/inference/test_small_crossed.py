@@ -1,0 +1,148 @@
+"""Few people at few sites: the ridge between levels of a parameter and effects of a group is sampled, tails included."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from small_crossed import Crossed, by_regression
+
+from skinbayes.fit import sample
+from skinbayes.sampling.ensembles import run_ensembles
+from skinbayes.sampling.options import SamplerOptions
+
+SITE_AND_PERSON = {"person": "half_normal = 0.5", "body_site": "half_normal = 0.5"}
+DESIGNS = {
+    "2x3": Crossed(2, 3),
+    "2x2": Crossed(2, 2),
+    "3x2": Crossed(3, 2),
+    "4x2": Crossed(4, 2),
+    "2x6": Crossed(2, 6),
+    "1x5, effects of sites": Crossed(1, 5, by=None, groups={"body_site": "half_normal = 0.5"}),
+    "2x3, wide scale": Crossed(2, 3, groups={"person": "half_normal = 0.9"}),
+    "2x3, flat scale": Crossed(2, 3, groups={"person": "uniform = [0, 3]"}),
+    "2x3, lognormal scale": Crossed(2, 3, groups={"person": "lognormal = [0.3, 0.7]"}),
+    "2x3, two groups": Crossed(2, 3, by=None, groups=SITE_AND_PERSON),
+    "2x3, levels and two groups": Crossed(2, 3, groups=SITE_AND_PERSON),
+    "2x3, by person and effects of people": Crossed(2, 3, by="person"),
+    "2x3, uniform": Crossed(2, 3, stress='uniform = ["0.5 MPa", "500 MPa"]'),
+    "2x3, little scatter": Crossed(2, 3, noise=0.01),
+}
+
+
+def assert_agrees(fit, exact) -> None:
+    """Probabilities below the 5, 50 and 95 % quantiles of the fit, by the exact weights, within five standard errors."""
+    # weights of a tail are few: this is the effective number of all draws, not of those in the tail
+    for i, name in enumerate(fit.provenance["names"]):
+        values = fit.draws(name)
+        size = 1.0 / (1.0 / exact.effective_size + 1.0 / fit.provenance["sampling"]["ess_tail"][i])
+        for level in (0.05, 0.5, 0.95):
+            found = exact.weights @ (exact.draws[:, i] < np.quantile(values, level))
+            assert found == pytest.approx(level, abs=5.0 * np.sqrt(level * (1.0 - level) / size)), name
+
+
+def test_two_people_at_two_sites_within_a_budget(tmp_path) -> None:
+    problem = Crossed(2, 2, loads=(200, 1000)).problem(tmp_path, seed=3)
+    fit = sample(problem, seed=3, max_steps=1000)
+    assert fit.converged
+    assert fit.provenance["sampling"]["evaluations"] <= 512 * 1001
+    exact = by_regression(problem, np.random.default_rng(8), 10_000)
+    assert exact.effective_size > 500
+    assert_agrees(fit, exact)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("design", DESIGNS)
+def test_small_designs_converge_to_the_exact_posterior(design, seed, tmp_path) -> None:
+    problem = DESIGNS[design].problem(tmp_path, seed)
+    fit = sample(problem, seed=seed, max_steps=3000)
+    print(design, seed, fit.provenance["sampling"]["verdict"])
+    assert fit.converged
+    exact = by_regression(problem, np.random.default_rng(seed))
+    assert exact.effective_size > 1000
+    assert_agrees(fit, exact)
+
+
+def test_the_density_ends_at_the_walls_and_is_the_posterior_between_them(tmp_path) -> None:
+    problem = Crossed(2, 2).problem(tmp_path, seed=1)
+    target = problem.target()
+    theta = problem.draw_prior(np.random.default_rng(1), 50)
+    place = target.transform.forward(theta)
+    jacobian = np.log(theta).sum(axis=1)
+    np.testing.assert_allclose(target.log_density(place), problem.log_posterior(theta) + jacobian, rtol=1e-9)
+    first = problem.names.index("frictional_shear_stress[volar forearm]")
+    for wall in (0.499e6, 501e6):
+        beyond = place.copy()
+        beyond[:, first] = np.log(wall)
+        assert (target.log_density(beyond) == -np.inf).all()
+    # a factor common to all levels is one shift, wherever it is applied
+    shifted = theta.copy()
+    shifted[:, first : first + 2] *= 1.5
+    assert np.ptp((target.transform.forward(shifted) - place)[:, first : first + 2]) < 1e-12
+
+
+def test_other_coordinates_are_another_run(tmp_path) -> None:
+    grouped = Crossed(2, 2).problem(tmp_path, seed=1)
+    assert grouped.target().fingerprint == grouped.fingerprint + "-walls"
+    positive = Crossed(2, 2, stress='lognormal = ["15 MPa", 1.0]').problem(tmp_path, seed=1)
+    assert positive.target().fingerprint == positive.fingerprint
+
+
+def test_a_short_run_says_what_it_lacks_and_what_to_do(tmp_path) -> None:
+    told = []
+    problem = Crossed(2, 2, loads=(200,)).problem(tmp_path, seed=1)
+    fit = sample(problem, seed=1, max_steps=200, progress=told.append)
+    verdict = fit.provenance["sampling"]["verdict"]
+    assert not fit.converged
+    assert "Cause: " in verdict and "What to do: " in verdict and "--resume --max-steps" in verdict
+    assert any(name in verdict for name in problem.names)
+    assert told[0].phase == "starting"
+    assert told[-1].report is not None and told[-1].phase in ("settling", "collecting")
+    for progress in told:
+        assert "effective sample size 0" not in progress.sentence()
+        assert len(progress.sentence(60)) <= 60
+
+
+def test_progress_of_a_run_that_needs_more_draws_tells_the_time_to_go() -> None:
+    from sampling_targets import UnitGaussian
+
+    told = []
+    run_ensembles(UnitGaussian(2), SamplerOptions(seed=1, ess=60_000, max_steps=2000), progress=told.append)
+    collecting = [p for p in told if p.phase == "collecting"]
+    assert collecting and told[-1].phase == "done"
+    for progress in collecting:
+        assert progress.sentence().startswith("found; effective sample size ")
+        assert progress.seconds_to_go is not None
+        assert progress.steps_needed == pytest.approx(told[-1].steps, rel=0.5)
+
+
+def test_straightened_funnels_keep_the_density(tmp_path) -> None:
+    problem = Crossed(2, 3, groups=SITE_AND_PERSON).problem(tmp_path, seed=2)
+    target = problem.target()
+    (funnel,) = target.transform.funnels
+    assert [problem.names[i] for i in funnel.levels] == [
+        n for n in problem.names if n.startswith("frictional")
+    ]
+    assert problem.names[funnel.scale] == "group_scale[body_site]"
+    theta = problem.draw_prior(np.random.default_rng(3), 20)
+    place = target.transform.forward(theta)
+    np.testing.assert_allclose(target.transform.inverse(place), theta, rtol=1e-10)
+    assert np.array_equal(target.log_density(place), [target.log_density(row[None])[0] for row in place])
+    step = 1e-6
+    for row, claimed in zip(place, target.transform.log_jacobian(place), strict=True):
+        moves = step * np.eye(len(row))
+        jacobian = (target.transform.inverse(row + moves) - target.transform.inverse(row - moves)) / (
+            2 * step
+        )
+        assert claimed == pytest.approx(np.linalg.slogdet(jacobian)[1], abs=1e-6)
+    # the deviations are as wide in the neck as in the mouth
+    levels = list(funnel.levels)
+    for scale in (1e-3, 0.03, 0.5):
+        narrow = place.copy()
+        narrow[:, funnel.scale] = np.log(scale)
+        deviations = np.log(target.transform.inverse(narrow)[:, levels])
+        deviations -= deviations.mean(axis=1, keepdims=True) + np.array(funnel.centre)
+        coordinates = place[:, levels] - place[:, levels].mean(axis=1, keepdims=True)
+        np.testing.assert_allclose(
+            deviations, coordinates * np.hypot(scale, funnel.width), rtol=1e-6, atol=1e-9
+        )
