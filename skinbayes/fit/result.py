@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     import pandas
@@ -191,6 +192,37 @@ class Fit:
 
         return to_arviz(self.groups)
 
-    def cite(self) -> list[str]:
-        """What to cite: the theory, the data, the software used."""
-        return list(self.provenance["references"])
+    def cite(self, style: Literal["text", "bibtex"] = "text") -> list[str]:
+        """What to cite: the theory that the model used, the data, the methods and this software.
+
+        Parameters
+        ----------
+        style : ``"text"``, one line each, or ``"bibtex"``, one entry each
+
+        Raises
+        ------
+        InputError
+            Another style.
+
+        Examples
+        --------
+        >>> import skinbayes
+        >>> fit = skinbayes.sample(skinbayes.load_problem("finger-water"), max_steps=100)
+        >>> print(fit.cite("bibtex")[-1])
+        @software{skinbayes,
+          author = {{The skinbayes developers}},
+          title = {{skinbayes: Bayesian inference of skin mechanics from friction data}},
+          version = {0.1.0},
+          note = {this software},
+        }
+        """
+        from skinbayes.fit.bibliography import Reference
+
+        if style not in ("text", "bibtex"):
+            raise InputError(f"style: found {style!r}; expected 'text' or 'bibtex'")
+        stored: list[dict[str, Any]] = self.provenance["references"]
+        known = [
+            Reference(**{key: tuple(v) if isinstance(v, list) else v for key, v in entry.items()})
+            for entry in stored
+        ]
+        return [reference.text() if style == "text" else reference.bibtex() for reference in known]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -151,7 +152,7 @@ def _provenance(problem: Problem, chains: Chains, settings: Any) -> dict[str, An
         "noise": dict(problem.spec.noise),
         "accuracy": problem.model.accuracy,
         "data": data,
-        "references": references(problem),
+        "references": [asdict(reference) for reference in references(problem)],
         "versions": _versions(),
         "sampling": {
             "converged": report.converged,
