@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 _SPECIAL = str.maketrans(
     {c: f"\\{c}" for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
@@ -36,6 +38,13 @@ class Reference:
     pages: str = ""
     doi: tuple[str, ...] = ()
     version: str = ""
+
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any]) -> Reference:
+        """A reference from its fields as they come from a file, where tuples are lists."""
+        return cls(
+            **{name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
+        )
 
     def text(self) -> str:
         """One line, as in a list of references.
