@@ -42,9 +42,10 @@ class Reference:
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> Reference:
         """A reference from its fields as they come from a file, where tuples are lists."""
-        return cls(
-            **{name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
-        )
+        fields: dict[str, Any] = {}
+        for name, value in entry.items():
+            fields[name] = tuple(value) if isinstance(value, list) else value
+        return cls(**fields)
 
     def text(self) -> str:
         """One line, as in a list of references.

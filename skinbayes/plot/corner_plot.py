@@ -67,11 +67,12 @@ def plot_corner(fit: Fit, width: str | None = None) -> Figure:
     if constant:
         notes.append(fill(f"constant, not drawn: {', '.join(constant)}", int(11 * size)))
     with look(size):
+        # a wide figure is as high as wide; in a narrow one the panels are
+        tall = size - form.left - 0.15 + form.top + form.bottom if form.listed else size
         figure = new_figure(
-            size, size - form.left - 0.15 + form.top + form.bottom if form.listed else size, left=form.left, right=0.15, bottom=form.bottom, top=form.top,
-            between=(form.gap, form.gap), panels=(count, count),
+            size, tall, left=form.left, right=0.15, bottom=form.bottom, top=form.top, between=(form.gap, form.gap),
+            panels=(count, count),
         )  # fmt: skip
-        height = float(figure.get_size_inches()[1])
         grid = figure.add_gridspec(count, count)
         for i, below in enumerate(columns):
             for j, beside in enumerate(columns[: i + 1]):
@@ -81,11 +82,11 @@ def plot_corner(fit: Fit, width: str | None = None) -> Figure:
         set_title(figure, fit, TITLE)
         if form.listed:
             figure.text(
-                0.5, 1.0 - 0.36 / height, "\n".join(column.line for column in columns), ha="center", va="top",
+                0.5, 1.0 - 0.36 / tall, "\n".join(column.line for column in columns), ha="center", va="top",
                 fontsize=7.5, linespacing=1.3,
             )  # fmt: skip
         figure.text(
-            0.5, 0.08 / height, "\n".join(notes), ha="center", va="bottom", fontsize=min(8.0, form.font + 1.0), linespacing=1.4,
+            0.5, 0.08 / tall, "\n".join(notes), ha="center", va="bottom", fontsize=min(8.0, form.font + 1.0), linespacing=1.4,
             parse_math=False,
         )  # fmt: skip
     return figure

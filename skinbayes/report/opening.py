@@ -19,11 +19,8 @@ from skinbayes.vocabulary import QUANTITIES, lookup
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
-MOST_ASKED = 4
-"""Parameters named in the question."""
-
-MOST_ANSWERED = 3
-"""Values in the answer."""
+MOST_ASKED = 2
+"""Quantities named in the question."""
 
 
 def data_name(fit: Fit) -> str:
@@ -41,46 +38,50 @@ def question(fit: Fit) -> str:
     """What was asked of which data."""
     count = len(observed_values(fit))
     listed = and_list([f"{spoken_name(name)}{_symbol(name)}" for name in observables(fit)])
-    values = f"{'one value' if count == 1 else f'{count} values'} of the {listed}"
-    where = [name] if (name := data_name(fit)) else []
+    values = f"{'one value' if count == 1 else f'{count} values'} of {listed}"
+    where = ""
     if found := varying(fit):
         condition, along = found
         known = QUANTITIES.get(condition)
-        unit = known.unit if known else "1"
-        where.append(
-            f"{spoken_name(condition)} {interval(float(along.min()), float(along.max()), unit, typical=float(np.median(along)))}"
+        ends = interval(
+            float(along.min()),
+            float(along.max()),
+            known.unit if known else "1",
+            typical=float(np.median(along)),
         )
-    asked = [label for label in fit.names if not is_scatter(label)]
-    names = [_named(fit, label) for label in asked[:MOST_ASKED]]
+        where = f", {spoken_name(condition)} {ends},"
+    asked = list(dict.fromkeys(label.partition("[")[0] for label in fit.names if not is_scatter(label)))
+    names = [f"{spoken_name(name)} {_plain_symbol(fit, name)}".strip() for name in asked[:MOST_ASKED]]
     if len(asked) > MOST_ASKED:
         names.append(f"{len(asked) - MOST_ASKED} more")
-    about = and_list(names) if names else "the scatter of the data"
-    verb = "does" if count == 1 else "do"
-    source = f" ({', '.join(where)})" if where else ""
-    return f"What {verb} {values}{source} say about the {about}?"
+    about = and_list(names) if names else "their scatter"
+    return f"What {'does' if count == 1 else 'do'} {values}{where} say about {about}?"
 
 
-def answer(fit: Fit) -> list[str]:
-    """What is known best, and what the data leave as it was: one or two sentences."""
-    updates = fit_updates(fit)
-    physical = [update for label, update in updates.items() if not is_scatter(label)]
+def answer(fit: Fit) -> str:
+    """What is known: the parameter that the data inform most, and the best known combination that the model names."""
+    physical = [update for label, update in fit_updates(fit).items() if not is_scatter(label)]
     learnt = sorted(
         (u for u in physical if u.verdict in ("updated", "contradicted")), key=lambda u: -u.contraction
     )
-    found = [_value(fit, name) for name in single_products(fit)] + [_value(fit, u.name) for u in learnt]
-    said = []
-    if found:
-        said.append(f"{'; '.join(found[:MOST_ANSWERED])}.")
-        if len(found) > MOST_ANSWERED:
-            said[0] = f"{said[0][:-1]}; and {len(found) - MOST_ANSWERED} more below."
-    elif physical:
-        said.append("These data tell next to nothing about any single one of them.")
+    products = sorted(single_products(fit), key=lambda label: _relative_width(fit, label))
+    values = [_value(fit, update.name) for update in learnt[:1]] + [
+        _value(fit, label) for label in products[:1]
+    ]
+    if not values:
+        return "These data tell next to nothing about any single parameter." if physical else ""
+    rest = len(learnt) + len(products) - len(values)
+    return f"{'; '.join(values)}{f'; {rest} more below' if rest else ''}."
+
+
+def unanswered(fit: Fit) -> list[str]:
+    """What the data leave as it was, and what they pull away from it."""
+    physical = [update for label, update in fit_updates(fit).items() if not is_scatter(label)]
     silent = [fit.symbol(u.name) for u in physical if u.verdict == "not updated"]
-    if silent and found:
-        said.append(f"About {and_list(silent)} these data say nothing: there only the prior speaks.")
-    moved = [fit.symbol(u.name) for u in physical if u.verdict in ("moved", "contradicted")]
-    if moved:
-        said.append(f"The data pull {and_list(moved)} away from what was assumed before.")
+    pulled = [fit.symbol(u.name) for u in physical if u.verdict in ("moved", "contradicted")]
+    said = [f"About {and_list(silent)} only the prior speaks."] if silent else []
+    if pulled:
+        said.append(f"Data and prior pull against each other in {and_list(pulled)}.")
     return said
 
 
@@ -93,22 +94,28 @@ def single_products(fit: Fit) -> list[str]:
     ]
 
 
-def _named(fit: Fit, label: str) -> str:
-    spoken, symbol = spoken_name(label), fit.symbol(label)
-    plain = symbol.partition(" (")[0]
-    return (
-        spoken if symbol in (label, spoken) else f"{spoken.partition(' (')[0]} {symbol}" if plain else spoken
-    )
+def _plain_symbol(fit: Fit, name: str) -> str:
+    """Symbol of a parameter without its level; empty if it has none but its name."""
+    label = next(label for label in fit.names if label.partition("[")[0] == name)
+    symbol = fit.symbol(label).partition(" (")[0]
+    return "" if symbol in (name, spoken_name(name)) else symbol
 
 
 def _value(fit: Fit, label: str) -> str:
     low, middle, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
-    unit = fit.unit(label)
-    name = _named(fit, label)
-    return (
-        f"{name[:1].upper()}{name[1:]} is {quantity(middle, unit)} "
-        f"(90 %: {interval(low, high, unit, typical=middle)})"
+    unit, symbol = fit.unit(label), fit.symbol(label)
+    name = (
+        ""
+        if label not in fit.names or spoken_name(label) == symbol
+        else f"{spoken_name(label).partition(' (')[0]} "
     )
+    value = f"{name}{symbol} = {quantity(middle, unit)} (90 %: {interval(low, high, unit, typical=middle)})"
+    return f"{value[:1].upper()}{value[1:]}" if name else value
+
+
+def _relative_width(fit: Fit, label: str) -> float:
+    low, middle, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
+    return (high - low) / abs(middle) if middle else np.inf
 
 
 def _symbol(name: str) -> str:

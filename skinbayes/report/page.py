@@ -89,6 +89,7 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "data_name": opening.data_name(fit),
         "question": opening.question(fit),
         "answer": opening.answer(fit),
+        "unanswered": opening.unanswered(fit),
         "fits": quality.verdict(fit),
         "misfit": quality.examine(fit).misfit,
         "sampling": quality.sampling(fit),

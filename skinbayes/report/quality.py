@@ -112,15 +112,15 @@ def verdict(fit: Fit) -> list[str]:
         ]
     elif found.count < FEW:
         said = [
-            f"Hardly tested: with {found.count} {'value' if found.count == 1 else 'values'} almost any model with as many "
-            "parameters would agree."
+            "Hardly tested: almost any model with as many parameters agrees with "
+            f"{'one value' if found.count == 1 else f'{found.count} values'}."
         ]
     else:
         said = [f"No misfit in single values, mean and scatter: {inside}."]
     if scatter := free_scatter(fit):
         said.append(
-            f"The scatter was fitted too, {scatter}: it takes in whatever the model misses, so look for dots that drift off the "
-            "model together."
+            f"The scatter was fitted too ({scatter}) and takes in whatever the model misses: look for dots that drift off it "
+            "together."
         )
     return said
 
@@ -197,31 +197,33 @@ def convergence(fit: Fit) -> list[str]:
         f"{run['ensembles']} independent ensembles of {run['walkers']} walkers made {run['steps']} steps each; the first "
         f"{run['burn_in']} were left out and one in {run['thinning']} of the others kept. "
         f"{percent(float(acceptance))} of the proposed moves were accepted; the model was evaluated {run['evaluations']} times.",
-        f"The smallest effective sample size of a parameter is {number(float(ess), 3)}, the largest R-hat {r_hat:.3f}. "
-        + kept_draws(fit),
+        f"The smallest effective sample size of a parameter is {number(float(ess), 3)}, the largest R-hat {r_hat:.3f}.",
     ]
+    if note := more_than_kept(fit):
+        said.append(note)
     if run["invalid"]:
         said.append(f"{run['invalid']} evaluations gave no finite value and counted as impossible.")
     return said
 
 
-def kept_draws(fit: Fit) -> str:
-    """What effective sample sizes count, beside the draws that the result holds."""
+def more_than_kept(fit: Fit) -> str:
+    """What an effective sample size above the number of stored draws is; empty if there is none."""
     sizes = fit.groups["posterior"].sizes
     kept = sizes["chain"] * sizes["draw"]
-    said = f"Effective sample sizes are those of all steps of the run; the result keeps {kept} draws of them"
     if max(fit.provenance["sampling"]["ess_bulk"]) <= kept:
-        return f"{said}."
-    return f"{said}, which are so far apart that they count as independent: quantiles are as good as {kept} draws make them."
+        return ""
+    return (
+        f"Effective sample sizes (ESS) count all steps of the run; {kept} draws of them are kept, nearly independent, and all "
+        "numbers here come from these."
+    )
 
 
 def sampling(fit: Fit) -> str:
     """How the sampling went, in one line: it says nothing about the model."""
     run = fit.provenance["sampling"]
-    state = "converged" if fit.converged else "NOT converged"
     return (
-        f"Sampling {state}: effective sample size at least {number(float(np.min(run['ess_bulk'])), 3)}, R-hat at most "
-        f"{np.max(run['r_hat']):.3f}. That is about the computation, not about the model."
+        f"The computation {'converged' if fit.converged else 'has NOT converged'}: effective sample size at least "
+        f"{number(float(np.min(run['ess_bulk'])), 3)}, R-hat at most {np.max(run['r_hat']):.3f}."
     )
 
 
