@@ -66,7 +66,7 @@ def plot_data(fit: Fit, width: str | None = None) -> Figure:
     size = inches(width)
     with look(size):
         figure = new_figure(
-            size, 1.25 + 0.47 * size * len(names), left=0.12 * size + 0.12, right=0.15, bottom=0.85, top=0.4, between=(0.0, 0.2),
+            size, 1.4 + 0.47 * size * len(names), left=0.12 * size + 0.12, right=0.15, bottom=1.0, top=0.4, between=(0.0, 0.2),
             panels=(1, len(names)),
         )  # fmt: skip
         axes = figure.subplots(len(names), 1, squeeze=False, sharex=True)[:, 0]
@@ -75,7 +75,7 @@ def plot_data(fit: Fit, width: str | None = None) -> Figure:
             _panel(ax, fit, _View(name, along, observable, observed[i], expected[:, i], bands))
         unit, label = axis_name(name)
         axes[-1].set_xlabel(axis_scale(name, scale_for(unit, along)).label(label))
-        key_below(figure, axes[0], 3)
+        key_below(figure, axes[0], 2)
         set_title(figure, fit, f"Data and model against {label}")
     return figure
 

@@ -107,9 +107,8 @@ def _data(fit: Fit) -> Iterator[Drawing]:
     yield Drawing(
         "data", plot_data, f"Data and model against {name}",
         f"Measured values against {name}, over what the fitted model predicts.",
-        "Dots are the measured values. The line is the median of the model and the band around it holds 90 % of the posterior; "
-        "where conditions differ from row to row there is none. Pale bars are what would be measured if the experiment were "
-        "repeated, scatter included: nine dots in ten should lie on them, evenly on both sides all along the axis.",
+        "Dots are measured. The line is the median of the model, the band around it holds 90 % of the posterior. Pale bars hold "
+        "90 % of what repeated measurements would give: nine dots in ten should lie on them, on both sides all along the axis.",
     )  # fmt: skip
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,9 +23,9 @@ MOST_ASKED = 2
 
 
 def data_name(fit: Fit) -> str:
-    """File or key of the data, without its folder."""
-    key = str(fit.provenance.get("data", {}).get("key", ""))
-    return PurePath(key.replace("\\", "/")).name
+    """File or data set that was fitted, without its folder."""
+    data = fit.provenance.get("data", {})
+    return str(data.get("name") or data.get("key", ""))
 
 
 def is_scatter(label: str) -> bool:

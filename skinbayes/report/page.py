@@ -186,7 +186,7 @@ def data_origin(fit: Fit) -> dict[str, Any]:
         "spread",
     )
     return {
-        "key": str(known.get("key", "")),
+        "key": opening.data_name(fit),
         "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
         "sha256": str(known.get("sha256", "")),
         **{name: str(origin.get(name) or "") for name in texts},

@@ -99,7 +99,7 @@ def verdict(fit: Fit) -> list[str]:
     """Whether the model fits, in a few sentences; what only looks like a good fit is not praised."""
     found = examine(fit)
     inside = (
-        f"{found.wide} of {found.count} values lie in the 90 % ranges predicted for them "
+        f"{found.wide} of {found.count} values lie in their 90 % ranges "
         f"(about {number(0.9 * found.count, 2)} expected)"
     )
     if found.misfit:
@@ -116,11 +116,12 @@ def verdict(fit: Fit) -> list[str]:
             f"{'one value' if found.count == 1 else f'{found.count} values'}."
         ]
     else:
-        said = [f"No misfit in single values, mean and scatter: {inside}."]
+        said = [f"Single values, mean and scatter do not speak against it: {inside}."]
     if scatter := free_scatter(fit):
+        start = "The" if found.misfit else "That is little: the"
         said.append(
-            f"The scatter was fitted too ({scatter}) and takes in whatever the model misses: look for dots that drift off it "
-            "together."
+            f"{start} scatter was fitted too ({scatter}) and takes in whatever the model misses. Look for dots that lie on "
+            "one side together."
         )
     return said
 
