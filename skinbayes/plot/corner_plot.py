@@ -202,7 +202,7 @@ def _dress(ax: Axes, beside: _Column, below: _Column | None, form: _Form, outer:
     ax.spines[["top", "right"]].set_visible(True)
     ax.tick_params(labelsize=form.font)
     ax.set_xlim(beside.limits)
-    _axis(ax.xaxis, beside.scale, beside.limits, form.ticks)
+    _axis(ax.xaxis, beside.scale, beside.limits, form)
     ax.tick_params(axis="x", rotation=90 if form.upright else 45, labelbottom=outer[0] and form.ticked)
     box = ax.get_window_extent().transformed(ax.figure.dpi_scale_trans.inverted())  # inch
     if outer[0]:
@@ -212,7 +212,7 @@ def _dress(ax: Axes, beside: _Column, below: _Column | None, form: _Form, outer:
     if below is None:
         return
     ax.set_ylim(below.limits)
-    _axis(ax.yaxis, below.scale, below.limits, form.ticks)
+    _axis(ax.yaxis, below.scale, below.limits, form)
     ax.tick_params(axis="y", rotation=0 if form.listed else 45, labelleft=outer[1] and form.ticked)
     if outer[1]:
         ax.set_ylabel(_label(below, form), fontsize=form.font, rotation=0 if form.listed else 90)
@@ -226,14 +226,21 @@ def _label(column: _Column, form: _Form) -> str:
     return column.symbol.replace(" (", "\n(") if form.listed else column.axis_label
 
 
-def _axis(axis: Axis, scale: Scale, limits: tuple[float, float], most: int) -> None:
-    """Ticks at round numbers; logarithmic axes hold log10 of what they show."""
+def _axis(axis: Axis, scale: Scale, limits: tuple[float, float], form: _Form) -> None:
+    """Ticks at round numbers, apart from each other and from the ends; logarithmic axes hold log10 of what they show."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
-    if not scale.logarithmic:
-        axis.set_major_locator(MaxNLocator(most))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(value)))
-        return
-    values = round_values(10.0 ** limits[0], 10.0 ** limits[1], most=most)
-    axis.set_major_locator(FixedLocator([float(np.log10(v)) for v in values]))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(float(f"{10.0**value:.3g}"))))
+    low, high = limits
+    if scale.logarithmic:
+        found = [float(np.log10(v)) for v in round_values(10.0**low, 10.0**high, most=form.ticks)]
+    else:
+        found = [float(v) for v in MaxNLocator(form.ticks).tick_values(low, high)]
+    room, kept = (0.3 if form.listed else 0.15) * (high - low), list[float]()
+    for position in found:
+        clear = low + 0.06 * (high - low) <= position <= high - 0.06 * (high - low)
+        if clear and (not kept or position - kept[-1] >= room):
+            kept.append(position)
+    axis.set_major_locator(FixedLocator(kept))
+    axis.set_major_formatter(
+        FuncFormatter(lambda v, _: plain_number(float(f"{10.0**v if scale.logarithmic else v:.3g}")))
+    )
