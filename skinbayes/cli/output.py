@@ -72,7 +72,7 @@ def print_table(
     """Print a table; ``right`` lists the columns aligned to the right.
 
     Words are never broken. A table whose words are too wide for the terminal becomes a list: for each row the first column
-    and below it the others, one a line with its header.
+    and below it the others, each with its header.
     """
     from rich.padding import Padding
     from rich.text import Text
@@ -86,7 +86,7 @@ def print_table(
     if title:
         terminal.print(Text(title, style="italic"))
     for first, *others in cells:
-        terminal.print(Text(first))
+        terminal.print(Text(f"{headers[0]}: {first}"))
         for header, cell in zip(headers[1:], others, strict=True):
             if cell:
                 terminal.print(Padding(Text(f"{header}: {cell}"), (0, 0, 0, 2)))
@@ -134,6 +134,15 @@ def _column_widths(
             return []
         widths[widest] -= 1
     return widths
+
+
+def print_text(*paragraphs: str) -> None:
+    """Print text; lines that are too long are wrapped, words stay whole."""
+    from rich.text import Text
+
+    terminal = console()
+    for paragraph in paragraphs:
+        terminal.print(Text(paragraph))
 
 
 def print_sentences(sentences: Iterable[str], title: str = "") -> None:

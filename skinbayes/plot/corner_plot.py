@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -60,7 +61,7 @@ def plot_corner(fit: Fit, width: str | None = None) -> Figure:
     columns = [_column(fit, label) for label in labels]
     count = len(columns)
     size = inches(width, min(LARGEST, max(SMALLEST, 1.5 + 1.25 * count)))
-    form = _form(size, count)
+    form = _form(size, columns)
     notes = ["dashed: 5 %, 50 % and 95 %"] + (
         ["contours: 50 % and 90 % of the probability"] if count > 1 else []
     )
@@ -119,15 +120,22 @@ class _Form:
     label: float
 
 
-def _form(size: float, count: int) -> _Form:
+def _form(size: float, columns: list[_Column]) -> _Form:
+    count = len(columns)
     if size / count >= ROOMY or (count == 1 and size >= SMALL):
         font = 9.0 if count <= 8 else max(6.0, 72.0 * size / count / 12.0)
         return _Form(False, True, False, 3, font, 0.9, 1.2, 0.95, 0.1, LABEL)
-    panel = (size - 0.9) / count
-    ticked = panel > 0.3
+    # letters of the longest line of a symbol, without its markup
+    letters = max(
+        len(re.sub(r"\\mathregular|[${}_]", "", line)) for c in columns for line in c.symbol.split(" (")
+    )
+    label = 0.42 if size > 0.9 + 0.3 * count else 0.1
+    left = label + 0.1 + 0.062 * letters
+    panel = (size - 0.15 - left) / count
+    ticked = label > 0.1
     return _Form(
-        listed=True, ticked=ticked, upright=panel < 0.45, ticks=3 if panel > 0.7 else 2, font=7.0, left=0.75 if ticked else 0.5,
-        bottom=1.1 if ticked else 0.9, top=0.5 + 0.137 * count, gap=0.05, label=0.42 if ticked else 0.1,
+        listed=True, ticked=ticked, upright=panel < 0.8, ticks=3 if panel > 0.7 else 2, font=7.0, left=left,
+        bottom=1.1 if ticked else 0.9, top=0.5 + 0.137 * count, gap=0.05, label=label,
     )  # fmt: skip
 
 

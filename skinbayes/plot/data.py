@@ -20,8 +20,19 @@ from skinbayes.plot.predictive import (
 from skinbayes.plot.profile_bands import MOST_CURVES, Band, profile_bands
 from skinbayes.plot.rows import row_abscissa
 from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks
-from skinbayes.plot.style import OBSERVED, POSTERIOR, SERIES, inches, key_below, look, new_figure, set_title
-from skinbayes.plot.symbols import axis_name, figure_text
+from skinbayes.plot.style import (
+    OBSERVED,
+    POSTERIOR,
+    SERIES,
+    inches,
+    key_below,
+    letters_of_key,
+    look,
+    new_figure,
+    set_title,
+    wrapped,
+)
+from skinbayes.plot.symbols import axis_name
 from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 
 if TYPE_CHECKING:
@@ -64,18 +75,22 @@ def plot_data(fit: Fit, width: str | None = None) -> Figure:
     observed = observed_values(fit).reshape(len(names), -1)
     expected = predictive_quantiles(fit).reshape(len(LEVELS), len(names), -1)
     size = inches(width)
+    bands = [_bands(fit, fit.problem, name, along, observable) for observable in names]
+    several = max(len(found) for found in bands) > 1
+    # long names of rows take several lines of the key
+    rows = max(sum(1 + len(band.label) // letters_of_key(size) for band in found) for found in bands)
+    below = 0.6 + 0.2 * (rows + 1 if several else 2)
     with look(size):
         figure = new_figure(
-            size, 1.4 + 0.47 * size * len(names), left=0.12 * size + 0.12, right=0.15, bottom=1.0, top=0.4, between=(0.0, 0.2),
-            panels=(1, len(names)),
+            size, 0.4 + below + 0.47 * size * len(names), left=0.12 * size + 0.12, right=0.15, bottom=below, top=0.4,
+            between=(0.0, 0.2), panels=(1, len(names)),
         )  # fmt: skip
         axes = figure.subplots(len(names), 1, squeeze=False, sharex=True)[:, 0]
         for i, (ax, observable) in enumerate(zip(axes, names, strict=True)):
-            bands = _bands(fit, fit.problem, name, along, observable)
-            _panel(ax, fit, _View(name, along, observable, observed[i], expected[:, i], bands))
+            _panel(ax, fit, _View(name, along, observable, observed[i], expected[:, i], bands[i]))
         unit, label = axis_name(name)
         axes[-1].set_xlabel(axis_scale(name, scale_for(unit, along)).label(label))
-        key_below(figure, axes[0], 2)
+        key_below(figure, axes[0], 1 if several else 2)
         set_title(figure, fit, f"Data and model against {label}")
     return figure
 
@@ -167,7 +182,7 @@ def _curves(ax: Axes, view: _View, x_scale: Scale, y_scale: Scale) -> list[tuple
             linewidth=0.0,
             label="90 % of the model" if single else "",
         )
-        ax.plot(x, median, color=colour, label="median" if single else figure_text(band.label))
+        ax.plot(x, median, color=colour, label="median" if single else wrapped(ax, band.label))
         drawn.append((np.array(band.rows), OBSERVED if single else colour))
     return drawn if whole else [(np.arange(len(view.along)), OBSERVED)]
 

@@ -46,7 +46,7 @@ MOST_LEVELS = 30
 
 MOST_CONDITIONS = 3
 
-LONGEST, LONGEST_SMALL = 26, 14
+LONGEST, LONGEST_SMALL = 26, 18
 """Letters of the name of a level, in wide and in narrow figures."""
 
 GONE = "The model or its data are gone, so that nothing can be predicted from this result."

@@ -108,12 +108,14 @@ def plot_levels(
         return sentence_figure(fit, title, f"The data cannot be drawn by group: {reason}.", width)
     view = _view(fit, fit.problem, column, abscissa, predictions or row_predictions(fit, fit.problem))
     size = inches(width, USUAL)
+    below = 0.9 if size >= SMALL else 1.15
     columns_drawn = COLUMNS if size >= SMALL else COLUMNS - 1
     rows = -(-len(view.levels) // columns_drawn)
     with look(size):
+        tall = 0.45 + below + (1.75 if size >= SMALL else 1.35) * rows
         figure = new_figure(
-            size, 1.35 + (1.75 if size >= SMALL else 1.35) * rows, left=0.55 + 0.026 * size, right=0.12, bottom=0.9, top=0.6,
-            between=(0.12, 0.32), panels=(columns_drawn, rows),
+            size, tall, left=0.55 + 0.026 * size, right=0.12, bottom=below, top=0.6, between=(0.12, 0.32),
+            panels=(columns_drawn, rows),
         )  # fmt: skip
         axes = figure.subplots(rows, columns_drawn, sharex=True, sharey=True, squeeze=False).reshape(-1)
         for ax, level in zip(axes, view.levels, strict=False):
@@ -126,7 +128,7 @@ def plot_levels(
         _dress(axes[0], view)
         figure.supxlabel(
             view.x_label,
-            y=0.47 / figure.get_size_inches()[1],
+            y=(below - 0.43) / figure.get_size_inches()[1],
             fontsize=10.0 if size >= SMALL else 8.0,
             va="center",
         )

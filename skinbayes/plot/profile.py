@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,11 +18,13 @@ from skinbayes.plot.style import (
     POSTERIOR,
     SERIES,
     inches,
+    letters_of_key,
     look,
     new_figure,
     sentence_figure,
     set_title,
     width_of,
+    wrapped,
 )
 from skinbayes.plot.symbols import axis_name, figure_text
 from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
@@ -90,7 +91,7 @@ def plot_profile(fit: Fit, abscissa: str | None = None, width: str | None = None
     size = inches(width)
     lines = max(len(bands) for _, bands in drawn)
     # long names of rows take several lines of a narrow key
-    rows = max(sum(1 + len(band.label) // int(13 * size) for band in bands) for _, bands in drawn)
+    rows = max(sum(1 + len(band.label) // letters_of_key(size) for band in bands) for _, bands in drawn)
     zoom = None if abscissa != "wavevector" else _smallest_wavevector(fit.problem)
     key = 0.22 * (rows if lines > 1 else 1) + 0.1
     height, top = (3.1 if len(drawn) == 1 else 2.0), 0.45 if zoom is None else 0.9
@@ -139,7 +140,7 @@ def _panel(
         )
         if single:
             ax.fill_between(x, q25, q75, color=colour, alpha=0.35, linewidth=0.0, label="25–75 %")
-        ax.plot(x, median, color=colour, label="median" if single else _wrapped(ax, band.label))
+        ax.plot(x, median, color=colour, label="median" if single else wrapped(ax, band.label))
     measured = _data(ax, fit, problem, profile, bands, x_scale, y_scale)
     for scale, setter in ((x_scale, ax.set_xscale), (y_scale, ax.set_yscale)):
         if scale.logarithmic:
@@ -193,11 +194,6 @@ def _data(
             label="measured" if i == 0 else None,
         )  # fmt: skip
     return along
-
-
-def _wrapped(ax: Axes, label: str) -> str:
-    """The name of a curve in as many lines as the width of the figure asks for."""
-    return "\n".join(figure_text(line) for line in wrap(label, int(13 * width_of(ax))))
 
 
 def _key(figure: Figure, axes: Any, lines: int) -> None:

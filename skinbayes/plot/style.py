@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.errors import InputError
+from skinbayes.plot.symbols import figure_text
 from skinbayes.units import parse_quantity
 
 if TYPE_CHECKING:
@@ -150,6 +152,16 @@ def width_of(ax: Axes) -> float:
     return float(ax.figure.bbox.width / ax.figure.dpi)
 
 
+def wrapped(ax: Axes, label: str) -> str:
+    """The name of a curve in as many lines as the width of the figure asks for."""
+    return "\n".join(figure_text(line) for line in wrap(label, letters_of_key(width_of(ax))))
+
+
+def letters_of_key(width: float) -> int:
+    """Letters of one line of a key with one column."""
+    return int(12 * width)
+
+
 def set_title(figure: Figure, fit: Fit, text: str) -> None:
     """Write the title as large as fits; a fit that has not converged is named so, in another colour and weight."""
     width, height = figure.get_size_inches()
@@ -177,8 +189,6 @@ def key_below(figure: Figure, ax: Axes, columns: int) -> None:
 
 def sentence_figure(fit: Fit, title: str, sentence: str, width: str | None = None) -> Figure:
     """A figure that says in words why there is nothing to draw."""
-    from textwrap import fill
-
     size = inches(width)
     with look(size):
         figure = new_figure(size, 1.4)

@@ -147,9 +147,10 @@ def disagreements(fit: Fit) -> list[str]:
         before = fit.draws(update.name, "prior")
         low, high = np.quantile(before, [0.05, 0.95])
         beyond = share(round(tail * len(before)), len(before))
+        beyond = beyond if beyond.startswith("less") else f"only {beyond}"
         said.append(
             f"{title_name(fit, update.name)}: half of the posterior lies {side} "
-            f"{quantity(float(np.median(fit.draws(update.name))), fit.unit(update.name))}, but only {beyond} of the prior "
+            f"{quantity(float(np.median(fit.draws(update.name))), fit.unit(update.name))}, but {beyond} of the prior "
             f"(90 % of it between {interval(low, high, fit.unit(update.name), joint=' and ')}). "
             + (
                 "The data contradict the prior: question the prior, the model or the data before using the number."

@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from grouped_fit import finger_fit
 from made_up_fit import made_up_fit
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -75,6 +76,13 @@ def test_no_text_lies_on_another(plot, parameters: int, rows: int, width: str | 
 def test_nor_in_figures_of_a_real_fit(width: str | None) -> None:
     fit = water()
     for draw in (fit.plot_data, fit.plot_profile, fit.plot_residuals, fit.plot_corner, fit.plot_predictive):
+        assert overlaps(draw(width=width)) == [], draw.__name__
+
+
+@pytest.mark.parametrize("width", [None, "84 mm"])
+def test_nor_in_figures_of_groups(width: str | None) -> None:
+    fit = finger_fit()
+    for draw in (fit.plot_data, fit.plot_levels, fit.plot_effects, fit.plot_profile, fit.plot_corner):
         assert overlaps(draw(width=width)) == [], draw.__name__
 
 
