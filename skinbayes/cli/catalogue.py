@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, say
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, print_text, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -97,18 +97,18 @@ def _show_model(name: str, as_json: bool) -> None:
             "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
         })  # fmt: skip
         return
-    say(f"{spec.title}\n\n{spec.description}\n")
-    say(f"forward model: {spec.forward} – {problem.forward.summary}")
-    say(
+    print_text(spec.title, "", spec.description, "")
+    print_text(f"forward model: {spec.forward} – {problem.forward.summary}")
+    print_text(
         f"data set:      {spec.dataset or ('yours, with --data' if spec.observables else 'none (predict only)')}"
         + (f", rows {spec.rows}" if spec.rows else "")
     )
     for observable, noise in spec.noise.items():
-        say(f"observable:    {observable}, noise {noise}")
+        print_text(f"observable:    {observable}, noise {noise}")
     if spec.rheology:
-        say(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
+        print_text(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
     for covariate in spec.covariates:
-        say(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
+        print_text(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
     rows = []
     for p in problem.free:
         rows.append((p.label, p.prior_text, p.source))

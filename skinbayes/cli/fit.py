@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from skinbayes.cli.fit_output import print_fit
 from skinbayes.cli.output import (
     EXIT_DONE,
     EXIT_INTERRUPTED,
     EXIT_NOT_CONVERGED,
     json_option,
     print_json,
-    print_sentences,
-    print_table,
     say,
 )
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
-
-MOST_ROWS = 4
-"""Derived quantities that differ over more rows than this are left to the summary file."""
 
 
 @click.command()
@@ -100,7 +95,7 @@ def fit(
     if as_json:
         print_json(_document(result, directory, page))
         return status
-    _print(result, directory, page)
+    print_fit(result, directory, page)
     return status
 
 
@@ -124,32 +119,3 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
         "report": page and str(page),
         **digest(result),
     }
-
-
-def _print(result: Fit, directory: Path, page: Path | None) -> None:
-    from skinbayes.fit.manifest import SUMMARY
-    from skinbayes.units import format_quantity
-
-    title = result.provenance["title"] + ("" if result.converged else "   – NOT CONVERGED")
-    free = result.summary()
-    everything = result.summary(derived=True)
-    # a quantity that differs by row is listed here for a few rows only; the file has them all
-    crowded = {
-        name
-        for name, count in Counter(label.partition("[")[0] for label in everything.index).items()
-        if count > MOST_ROWS
-    }
-    rows = []
-    for label, row in zip(everything.index.astype(str), everything.to_dict("records"), strict=True):
-        if label not in free.index and label.partition("[")[0] in crowded:
-            continue
-        values = [format_quantity(row[key], row["unit"]) for key in ("median", "q05", "q95")]
-        convergence = [f"{row['ess_bulk']:.0f}", f"{row['r_hat']:.3f}"] if label in free.index else ["", ""]
-        rows.append([label, *values, *convergence])
-    print_table(
-        ("parameter", "median", "5 %", "95 %", "ESS", "R-hat"), rows, title=title, right=(1, 2, 3, 4, 5)
-    )
-    print_sentences([result.provenance["sampling"]["verdict"]])
-    if crowded:
-        say(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
-    say(f"run: {directory}" + (f"\nreport: {page}" if page else f"\nreport: skinbayes report {directory}"))

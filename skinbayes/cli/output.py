@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -19,6 +20,10 @@ from skinbayes.errors import NEXT_PROBLEM
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table
+
+PIPED, NARROWEST = 160, 30
+"""Columns of output that is no terminal, and the fewest that are taken from the variable COLUMNS."""
 
 EXIT_DONE = 0
 EXIT_BAD_INPUT = 2
@@ -101,21 +106,53 @@ def plain(value: Any) -> Any:
 
 
 def console(stderr: bool = False) -> Console:
-    """A rich console; plain text when it is not a terminal, and then as wide as the text."""
+    """A rich console; where it is not a terminal plain text, as wide as ``COLUMNS`` says or as wide as text usually is."""
     from rich.console import Console
 
     made = Console(stderr=stderr, highlight=False, emoji=False)
-    return (
-        made
-        if made.is_terminal
-        else Console(stderr=stderr, highlight=False, emoji=False, width=160, color_system=None)
-    )
+    if made.is_terminal:
+        return made
+    columns = os.environ.get("COLUMNS", "")
+    # fewer columns than a word is long would cut words
+    width = max(NARROWEST, int(columns)) if columns.isdecimal() and int(columns) else PIPED
+    return Console(stderr=stderr, highlight=False, emoji=False, width=width, color_system=None)
 
 
 def print_table(
     headers: Sequence[str], rows: Iterable[Sequence[str]], title: str = "", right: Sequence[int] = ()
 ) -> None:
-    """Print a table; ``right`` lists the columns aligned to the right."""
+    """Print a table; ``right`` lists the columns aligned to the right.
+
+    Words are never broken. A table whose words are too wide for the terminal becomes a list: for each row the first column
+    and below it the others, each with its header.
+    """
+    from rich.padding import Padding
+    from rich.text import Text
+
+    cells = [[_cell(cell) for cell in row] for row in rows]
+    terminal = console()
+    for gap in (3, 2):
+        if widths := _column_widths(headers, cells, right, terminal.width - gap * len(headers) + 1):
+            terminal.print(_table(headers, cells, title, right, widths, gap))
+            return
+    if title:
+        terminal.print(Text(printable(title), style="italic"))
+    for first, *others in cells:
+        terminal.print(Text(f"{headers[0]}: {first}"))
+        for header, cell in zip(headers[1:], others, strict=True):
+            if cell:
+                terminal.print(Padding(Text(f"{header}: {cell}"), (0, 0, 0, 2)))
+    terminal.print("")
+
+
+def _table(
+    headers: Sequence[str],
+    rows: list[list[str]],
+    title: str,
+    right: Sequence[int],
+    widths: list[int],
+    gap: int,
+) -> Table:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
     from rich.text import Text
@@ -123,11 +160,43 @@ def print_table(
     table = Table(
         title=Text(printable(title)) if title else None, box=SIMPLE_HEAD, title_justify="left", pad_edge=False
     )
+    table.padding = (0, gap - 2, 0, 1)
     for i, header in enumerate(headers):
-        table.add_column(Text(_cell(header)), justify="right" if i in right else "left", overflow="fold")
+        table.add_column(
+            Text(header), justify="right" if i in right else "left", overflow="fold", width=widths[i]
+        )
     for row in rows:
-        table.add_row(*(Text(_cell(cell)) for cell in row))
-    console().print(table)
+        table.add_row(*(Text(cell) for cell in row))
+    return table
+
+
+def _column_widths(
+    headers: Sequence[str], rows: list[list[str]], right: Sequence[int], room: int
+) -> list[int]:
+    """Widths of columns that cut no word, and no number from its unit; empty if there is no room for them."""
+    from rich.cells import cell_len
+
+    columns = [list(column) for column in zip(headers, *rows, strict=True)]
+    widths = [
+        max(cell_len(line) for cell in column for line in [*cell.splitlines(), ""]) for column in columns
+    ]
+    pieces = [column if i in right else " ".join(column).split() for i, column in enumerate(columns)]
+    least = [max((cell_len(piece) for piece in found), default=0) for found in pieces]
+    for _ in range(sum(widths) - room):
+        widest = max(range(len(widths)), key=lambda i: (widths[i] > least[i], widths[i]))
+        if widths[widest] <= least[widest]:
+            return []
+        widths[widest] -= 1
+    return widths
+
+
+def print_text(*paragraphs: str) -> None:
+    """Print text; lines that are too long are wrapped, words stay whole."""
+    from rich.text import Text
+
+    terminal = console()
+    for paragraph in paragraphs:
+        terminal.print(Text(printable(paragraph)))
 
 
 def _cell(text: str) -> str:

@@ -49,7 +49,7 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
     if len(missing) == problem.conditions.n_rows:
         raise InputError(f"{model}: no row has a prediction; {missing[0]}")
     if problem.free:
-        click.echo(
+        say(
             f"note: this is no result of a fit: {', '.join(problem.names)} at the median of the prior",
             err=True,
         )
@@ -67,9 +67,9 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
     else:
         _print(problem, theta, columns, prediction)
     for sentence in missing[:_MOST_SENTENCES]:
-        click.echo(f"skinbayes: {model}: {sentence}", err=True)
+        say(f"skinbayes: {model}: {sentence}", err=True)
     if len(missing) > _MOST_SENTENCES:
-        click.echo(f"skinbayes: {model}: {len(missing)} rows in all have no prediction", err=True)
+        say(f"skinbayes: {model}: {len(missing)} rows in all have no prediction", err=True)
     return EXIT_BAD_INPUT if missing else EXIT_DONE
 
 
@@ -126,4 +126,4 @@ def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[s
     ]
     print_table(headers, cells, right=range(len(columns), len(headers)))
     if left := problem.conditions.n_rows - len(cells):
-        click.echo(f"{left} further rows; --json gives all")
+        say(f"{left} further rows; --json gives all")

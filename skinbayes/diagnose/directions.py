@@ -16,10 +16,11 @@ from skinbayes.diagnose.combinations import (
     with_derived,
 )
 from skinbayes.diagnose.findings import Combination, Equivalent, Freedom, Group
+from skinbayes.diagnose.rule import UNCHANGED
 from skinbayes.diagnose.sensitivities import IntArray, Sensitivities
 from skinbayes.diagnose.words import change, product
 
-INFORMED = float(np.sqrt(1.0 / 0.9**2 - 1.0))
+INFORMED = float(np.sqrt(1.0 / UNCHANGED**2 - 1.0))
 """Singular value at which the posterior standard deviation is 0.9 of the prior one."""
 
 
@@ -40,6 +41,7 @@ def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: Int
     counts = (parts.values >= INFORMED).sum(axis=1)
     rank = int(np.median(counts))
     vectors = simplest_basis(parts.vectors[:, :rank, :]) if rank else []
+    combinations = [_combination(found, vector, parts, rows) for vector in vectors]
     low, high = np.quantile(counts, [0.05, 0.95])
     effect = np.quantile(np.linalg.norm(scaled, axis=1), 0.9, axis=0)
     return Group(
@@ -50,7 +52,7 @@ def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: Int
         spread_ratios=tuple(
             float(v) for v in np.median(1.0 / np.sqrt(1.0 + parts.values[:, :rank] ** 2), axis=0)
         ),
-        combinations=tuple(_combination(found, vector, parts, rows) for vector in vectors),
+        combinations=tuple(c for c in combinations if c.nameable),
         silent=tuple(name for name, size in zip(found.names, effect, strict=True) if size < INFORMED),
     )
 
@@ -126,7 +128,7 @@ def equivalents(found: Sensitivities, groups: tuple[Group, ...]) -> tuple[Equiva
             _renamed(c, parameter, name, power, found)
             for group in groups
             for c in group.combinations
-            if power is not None and parameter in c.exponents and len(c.exponents) > 1
+            if power is not None and parameter in c.exponents and len(c.exponents) > 1 and c.constant
         ]
         if power is not None and reads and found.logarithmic[column]:
             result.append(Equivalent(name, parameter, power, tuple(dict.fromkeys(reads))))

@@ -5,7 +5,11 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from skinbayes.diagnose.rule import verdict
 from skinbayes.diagnose.words import listed, percent, product, rows_text
+
+SIGN = 0.05
+"""An exponent beyond this on both sides of zero changes sign over the prior."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +36,15 @@ class Combination:
     weak: tuple[str, ...]
     spread_ratio: float
 
+    @property
+    def nameable(self) -> bool:
+        """Whether it can be written as a product of powers: exponents that change sign make no combination."""
+        return not any(low < -SIGN and high > SIGN for low, high in self.ranges.values())
+
     def phrase(self) -> str:
         """The combination with what has to be known about it."""
-        if not self.constant:
-            return f"{self.text} (its exponents vary over the prior)"
+        if not self.constant and len(self.exponents) > 1:
+            return f"a combination of {listed(list(self.exponents))} (its exponents vary over the prior)"
         return self.text if self.exact else f"{self.text} (approximately)"
 
 
@@ -49,7 +58,7 @@ class Group:
     directions : number of directions of parameter space that the rows inform, median over the prior
     directions_range : smallest and largest number over the prior
     spread_ratios : posterior over prior standard deviation along these directions, best informed first
-    combinations : the same directions as combinations
+    combinations : the same directions as combinations; those whose exponents change sign over the prior are none
     silent : parameters of which one prior standard deviation moves the predictions less than their noise
     """
 
@@ -69,11 +78,13 @@ class Group:
         phrases = [combination.phrase() for combination in self.combinations]
         shares = [percent(combination.spread_ratio) for combination in self.combinations]
         if not phrases:
-            lines = [f"{start}: {self.directions} directions are informed, with no simple names."]
+            informed = "1 direction is" if self.directions == 1 else f"{self.directions} directions are"
+            lines = [f"{start}: {informed} informed, with no simple names."]
         elif len(phrases) == 1:
-            alone = len(self.combinations[0].exponents) == 1
+            only = "only " if self.directions == 1 else ""
+            simple = self.combinations[0].constant and len(self.combinations[0].exponents) > 1
             lines = [
-                f"{start}: only {'' if alone else 'the combination '}{phrases[0]} is determined; "
+                f"{start}: {only}{'the combination ' if simple else ''}{phrases[0]} is determined; "
                 f"its spread shrinks to {shares[0]} of the prior's."
             ]
         else:
@@ -154,7 +165,7 @@ class Identifiability:
     points, failed_points : number of prior draws that were used, and that had no finite prediction
     groups : one entry for each group of rows, the last one is all rows
     freedoms : independent changes that all rows together do not notice
-    only_prior : parameters that all rows together say nothing about
+    only_prior : parameters whose effect on all rows together is below their noise
     absent : those of them that enter no prediction at all
     spread_ratios : posterior over prior standard deviation of each parameter by itself
     equivalents : derived quantities that follow a single parameter of the combinations above
@@ -196,7 +207,19 @@ class Identifiability:
         if present:
             whose = "its" if len(present) == 1 else "their"
             lines.append(
-                f"Only the prior speaks about {listed(present)}: {whose} effect is below the noise of the data."
+                f"Only the prior will speak about {listed(present)}, as far as can be said before sampling: {whose} effect is "
+                "below the noise of the data."
+            )
+        together = [
+            name
+            for name, ratio in self.spread_ratios.items()
+            if verdict(ratio) == "not updated" and name not in self.only_prior
+        ]
+        if together:
+            one = len(together) == 1
+            lines.append(
+                f"By {'itself' if one else 'themselves'}, {listed(together)} will hardly differ from the "
+                f"prior{'' if one else 's'}: the data know {'it' if one else 'them'} only together with others."
             )
         if self.absent:
             verb = "enters" if len(self.absent) == 1 else "enter"

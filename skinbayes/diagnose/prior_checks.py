@@ -5,22 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Literal
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.diagnose.rule import Verdict, verdict
 from skinbayes.diagnose.words import percent
 from skinbayes.statistics.transforms import VectorTransform
-
-NOT_UPDATED = 0.1
-"""Contraction below which the data are said not to have updated a parameter."""
-
-MOVED = 0.2
-"""A posterior median in this tail of the prior means that the data moved a parameter even if they did not narrow it."""
-
-CONTRADICTED = 0.01
-"""A posterior median in this tail of the prior means that data and prior contradict each other."""
 
 RIDGE = 0.9
 """Correlation above which two parameters lie on a ridge."""
@@ -42,7 +33,12 @@ class PriorUpdate:
     name: str
     contraction: float
     prior_quantile: float
-    verdict: Literal["updated", "moved", "not updated", "contradicted"]
+    verdict: Verdict
+
+    @property
+    def ratio(self) -> float:
+        """Posterior over prior standard deviation."""
+        return float(np.sqrt(max(0.0, 1.0 - self.contraction)))
 
     def sentence(self) -> str:
         """The finding in plain English."""
@@ -62,8 +58,7 @@ class PriorUpdate:
                 f"{self.name}: moved by the data but not narrowed; half of the posterior lies {side} a value that the prior "
                 f"gave {share} chance."
             )
-        left = float(np.sqrt(max(0.0, 1.0 - self.contraction)))
-        return f"{self.name}: updated by the data; its standard deviation is {percent(left)} of the prior's."
+        return f"{self.name}: updated by the data; its standard deviation is {percent(self.ratio)} of the prior's."
 
 
 def prior_updates(
@@ -86,7 +81,8 @@ def prior_updates(
     Returns
     -------
     one finding per parameter: ``contradicted`` if the posterior median lies beyond the 1 % or 99 % quantile of the prior;
-    otherwise, if the contraction is below 0.1, ``moved`` if it lies beyond the 20 % or 80 % quantile and ``not updated`` if not
+    otherwise, if the standard deviation is still 0.9 of the prior's or more, ``moved`` if it lies beyond the 20 % or 80 %
+    quantile and ``not updated`` if not
 
     Examples
     --------
@@ -102,12 +98,8 @@ def prior_updates(
     contraction = 1.0 - after.var(axis=0, ddof=1) / before.var(axis=0, ddof=1)
     updates = []
     for name, shrunk, quantile in zip(names, contraction, share, strict=True):
-        verdict: Literal["updated", "moved", "not updated", "contradicted"] = "updated"
-        if not CONTRADICTED <= quantile <= 1.0 - CONTRADICTED:
-            verdict = "contradicted"
-        elif shrunk < NOT_UPDATED:
-            verdict = "not updated" if MOVED <= quantile <= 1.0 - MOVED else "moved"
-        updates.append(PriorUpdate(name, float(shrunk), float(quantile), verdict))
+        ratio = float(np.sqrt(max(0.0, 1.0 - shrunk)))
+        updates.append(PriorUpdate(name, float(shrunk), float(quantile), verdict(ratio, float(quantile))))
     return tuple(updates)
 
 

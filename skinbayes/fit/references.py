@@ -1,27 +1,87 @@
-"""What to cite for a fit."""
+"""What to cite for a fit: the theory that its model used, its data, the methods, and this software."""
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from skinbayes import __version__
+from skinbayes.fit.bibliography import (
+    ARVIZ,
+    CAPILLARY,
+    DIFFERENTIAL_EVOLUTION,
+    ELASTOPLASTIC,
+    EMCEE,
+    FLOW_FACTORS,
+    GAPS,
+    MIXED_LUBRICATION,
+    PERSSON_2001,
+    PERSSON_2013,
+    R_HAT,
+    SEPARATION,
+    YANG_PERSSON,
+    Reference,
+    key_of,
+)
+
 if TYPE_CHECKING:
+    from skinbayes.files.dataset import Dataset
     from skinbayes.problem import Problem
 
-THEORY = (
-    "Persson, Kovalev & Gorb 2013, Tribology Letters 50:17, doi 10.1007/s11249-012-0053-2 (contact and friction of skin)",
-    "Persson 2001, Journal of Chemical Physics 115:3840, doi 10.1063/1.1388626 (contact area)",
-)
-SOFTWARE = (
-    "Foreman-Mackey, Hogg, Lang & Goodman 2013, PASP 125:306, doi 10.1086/670067 (emcee)",
-    "Kumar, Carroll, Hartikainen & Martin 2019, JOSS 4:1143, doi 10.21105/joss.01143 (ArviZ)",
-)
+BRIDGES = {"surface_tension", "contact_angle_skin", "contact_angle_counterface"}
+"""Inputs of models with capillary bridges."""
+
+LUBRICATED = {"viscosity", "speed_viscosity_product"}
 
 
-def references(problem: Problem) -> list[str]:
-    """References for theory, data and software of a problem, each with a DOI where there is one."""
-    data: list[str] = []
-    if problem.dataset is not None and problem.dataset.provenance is not None:
-        origin = problem.dataset.provenance
-        doi = ", ".join(origin.doi)
-        data.append(f"{', '.join(origin.authors)}: {origin.title}{f', doi {doi}' if doi else ''} (data)")
-    return [*THEORY, *data, *SOFTWARE]
+def references(problem: Problem) -> list[Reference]:
+    """Theory, data, methods and software that a fit of a problem rests on.
+
+    Theory follows from what enters the model: roughness, the correction of small contact areas unless it is 1, a yield stress
+    that is finite, capillary bridges, a lubricant. A model without contact mechanics cites none.
+    """
+    origin = [] if problem.dataset is None else data_reference(problem.dataset)
+    return [*_theory(problem), *origin, EMCEE, DIFFERENTIAL_EVOLUTION, R_HAT, ARVIZ, software()]
+
+
+def data_reference(dataset: Dataset) -> list[Reference]:
+    """The source of a data set, if it states one."""
+    if dataset.provenance is None:
+        return []
+    known = dataset.provenance
+    key = f"data-{key_of(PurePath(dataset.key).stem)}"
+    return [Reference(key, tuple(known.authors), known.title, "data", doi=tuple(known.doi))]
+
+
+def software() -> Reference:
+    """This package."""
+    return Reference(
+        "skinbayes", ("The skinbayes developers",), "skinbayes: Bayesian inference of skin mechanics from friction data",
+        "this software", version=__version__,
+    )  # fmt: skip
+
+
+def _theory(problem: Problem) -> list[Reference]:
+    if not problem.forward.uses_surface:
+        return []
+    names = set(problem.forward.input_names())
+    values = problem.inputs(problem.prior_medians()[np.newaxis])
+
+    def is_used(name: str, idle: float) -> bool:
+        return name in values and bool(np.any(values[name] != idle))
+
+    bridges, liquid = bool(BRIDGES & names), bool(LUBRICATED & names)
+    used = {
+        PERSSON_2013: True,
+        PERSSON_2001: True,
+        YANG_PERSSON: bridges or liquid or is_used("area_correction", 1.0),
+        ELASTOPLASTIC: is_used("yield_stress", np.inf),
+        SEPARATION: bridges or liquid,
+        GAPS: bridges or liquid,
+        CAPILLARY: bridges,
+        MIXED_LUBRICATION: liquid,
+        FLOW_FACTORS: liquid,
+    }
+    return [reference for reference, needed in used.items() if needed]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     import pandas
@@ -125,59 +126,68 @@ class Fit:
         symbol = block or str(self.groups["posterior"][name].attrs.get("symbol", name))
         return f"{symbol} ({level.removesuffix(']')})" if level else symbol
 
-    def plot_corner(self) -> Figure:
+    def plot_data(self, width: str | None = None) -> Figure:
+        """Data and model against the condition that varies: load, speed, humidity, time.
+
+        Every figure takes its ``width`` as text with a unit: ``"84 mm"`` for a column of a journal.
+        """
+        from skinbayes.plot import plot_data
+
+        return plot_data(self, width=width)
+
+    def plot_corner(self, width: str | None = None) -> Figure:
         """Corner plot of the free parameters."""
         from skinbayes.plot import plot_corner
 
-        return plot_corner(self)
+        return plot_corner(self, width=width)
 
-    def plot_trace(self) -> Figure:
+    def plot_trace(self, width: str | None = None) -> Figure:
         """Draws against time for each ensemble."""
         from skinbayes.plot import plot_trace
 
-        return plot_trace(self)
+        return plot_trace(self, width=width)
 
-    def plot_predictive(self) -> Figure:
+    def plot_predictive(self, width: str | None = None) -> Figure:
         """Observed values against the posterior predictive distribution."""
         from skinbayes.plot import plot_predictive
 
-        return plot_predictive(self)
+        return plot_predictive(self, width=width)
 
-    def plot_prior_posterior(self) -> Figure:
+    def plot_prior_posterior(self, width: str | None = None) -> Figure:
         """Prior against posterior of each parameter."""
         from skinbayes.plot import plot_prior_posterior
 
-        return plot_prior_posterior(self)
+        return plot_prior_posterior(self, width=width)
 
-    def plot_prior_predictive(self) -> Figure:
+    def plot_prior_predictive(self, width: str | None = None) -> Figure:
         """Observed values against what the priors alone predict."""
         from skinbayes.plot import plot_prior_predictive
 
-        return plot_prior_predictive(self)
+        return plot_prior_predictive(self, width=width)
 
-    def plot_profile(self, abscissa: str | None = None) -> Figure:
+    def plot_profile(self, abscissa: str | None = None, width: str | None = None) -> Figure:
         """Curves of the forward model with posterior bands and data, against one quantity (the first it offers)."""
         from skinbayes.plot import plot_profile
 
-        return plot_profile(self, abscissa)
+        return plot_profile(self, abscissa, width)
 
-    def plot_levels(self, column: str | None = None) -> Figure:
+    def plot_levels(self, column: str | None = None, width: str | None = None) -> Figure:
         """Data over posterior bands, a panel for each level of a grouping column such as ``person``."""
         from skinbayes.plot import plot_levels
 
-        return plot_levels(self, column)
+        return plot_levels(self, column, width=width)
 
-    def plot_effects(self) -> Figure:
+    def plot_effects(self, width: str | None = None) -> Figure:
         """Effects of groups, and the residuals of their rows."""
         from skinbayes.plot import plot_effects
 
-        return plot_effects(self)
+        return plot_effects(self, width=width)
 
-    def plot_residuals(self) -> Figure:
+    def plot_residuals(self, width: str | None = None) -> Figure:
         """What is left between data and model, against the abscissa and the conditions."""
         from skinbayes.plot import plot_residuals
 
-        return plot_residuals(self)
+        return plot_residuals(self, width=width)
 
     def save(self, path: str | Path) -> Path:
         """Write the result as one netCDF file in the ArviZ schema."""
@@ -191,6 +201,33 @@ class Fit:
 
         return to_arviz(self.groups)
 
-    def cite(self) -> list[str]:
-        """What to cite: the theory, the data, the software used."""
-        return list(self.provenance["references"])
+    def cite(self, style: Literal["text", "bibtex"] = "text") -> list[str]:
+        """What to cite: the theory that the model used, the data, the methods and this software.
+
+        Parameters
+        ----------
+        style : ``"text"``, one line each, or ``"bibtex"``, one entry each
+
+        Raises
+        ------
+        InputError
+            Another style.
+
+        Examples
+        --------
+        >>> import skinbayes
+        >>> fit = skinbayes.sample(skinbayes.load_problem("finger-water"), max_steps=100)
+        >>> print(fit.cite("bibtex")[-1])
+        @software{skinbayes,
+          author = {{The skinbayes developers}},
+          title = {{skinbayes: Bayesian inference of skin mechanics from friction data}},
+          version = {0.1.0},
+          note = {this software},
+        }
+        """
+        from skinbayes.fit.bibliography import Reference
+
+        if style not in ("text", "bibtex"):
+            raise InputError(f"style: found {style!r}; expected 'text' or 'bibtex'")
+        known = [Reference.from_dict(entry) for entry in self.provenance["references"]]
+        return [reference.text() if style == "text" else reference.bibtex() for reference in known]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -152,7 +153,9 @@ def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> d
     dataset = problem.dataset
     data: dict[str, Any] = {"fingerprint": problem.data_fingerprint}
     if dataset is not None:
-        data |= {"key": dataset.key, "sha256": dataset.sha256, "rows": dataset.n_rows}
+        # a folder with provenance is known by its own name, a file by its own
+        name = dataset.path.name if dataset.path.stem == dataset.key else dataset.key
+        data |= {"key": dataset.key, "name": name, "sha256": dataset.sha256, "rows": dataset.n_rows}
         if dataset.provenance is not None:
             data["origin"] = dataset.provenance.model_dump()
     return {
@@ -173,7 +176,7 @@ def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> d
         "noise": dict(problem.spec.noise),
         "accuracy": problem.model.accuracy,
         "data": data,
-        "references": references(problem),
+        "references": [asdict(reference) for reference in references(problem)],
         "versions": _versions(),
         "sampling": {
             "converged": report.converged,

@@ -1,6 +1,7 @@
 """Figures of a fit. Each function takes a fit and returns a matplotlib ``Figure`` that belongs to no window."""
 
 from skinbayes.plot.corner_plot import plot_corner
+from skinbayes.plot.data import plot_data
 from skinbayes.plot.effects import plot_effects, plot_residuals
 from skinbayes.plot.levels import plot_levels
 from skinbayes.plot.predictive import plot_predictive, plot_prior_predictive
@@ -10,6 +11,7 @@ from skinbayes.plot.trace import plot_trace
 
 __all__ = [
     "plot_corner",
+    "plot_data",
     "plot_effects",
     "plot_levels",
     "plot_predictive",

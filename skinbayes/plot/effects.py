@@ -22,7 +22,9 @@ from skinbayes.plot.scales import axis_scale, plain_number, round_values, scale_
 from skinbayes.plot.style import (
     OBSERVED,
     POSTERIOR,
+    SMALL,
     WIDTH,
+    inches,
     key_below,
     look,
     new_figure,
@@ -44,16 +46,20 @@ MOST_LEVELS = 30
 
 MOST_CONDITIONS = 3
 
+LONGEST, LONGEST_SMALL = 26, 18
+"""Letters of the name of a level, in wide and in narrow figures."""
+
 GONE = "The model or its data are gone, so that nothing can be predicted from this result."
 
 
-def plot_effects(fit: Fit, predictions: RowPredictions | None = None) -> Figure:
+def plot_effects(fit: Fit, predictions: RowPredictions | None = None, width: str | None = None) -> Figure:
     """Draw the effect of each level of each grouping column, and the residuals of its rows about the model without it.
 
     Parameters
     ----------
     fit : a fit with its problem
     predictions : from :func:`skinbayes.plot.rows.row_predictions`, to compute them once for several figures
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -66,18 +72,20 @@ def plot_effects(fit: Fit, predictions: RowPredictions | None = None) -> Figure:
     columns = telling_columns(fit)
     title = "Effects of groups and residuals" if group_columns(fit) else "Residuals by group"
     if fit.problem is None:
-        return sentence_figure(fit, title, GONE)
+        return sentence_figure(fit, title, GONE, width)
     if not columns:
-        return sentence_figure(fit, title, "No column groups these data.")
+        return sentence_figure(fit, title, "No column groups these data.", width)
     predictions = predictions or row_predictions(fit, fit.problem)
     counts = [min(MOST_LEVELS, len(set(levels_of_rows(fit, column)))) for column in columns]
     above, between, below = 0.7, 0.75, 0.95
     height = above + below + between * (len(columns) - 1) + 0.24 * sum(counts)
-    longest = max(len(_short(level)) for column in columns for level in levels_of_rows(fit, column))
-    with look():
+    size = inches(width, WIDTH + 1.4)
+    letters = LONGEST if size >= SMALL else LONGEST_SMALL
+    longest = max(len(_short(level, letters)) for column in columns for level in levels_of_rows(fit, column))
+    with look(size):
         figure = new_figure(
-            WIDTH + 1.4, height, left=0.3 + 0.078 * longest, bottom=below, top=above, between=(0.0, between),
-            panels=(1, len(columns)),
+            size, height, left=0.3 + (0.078 if size >= SMALL else 0.066) * longest, bottom=below, top=above,
+            between=(0.0, between), panels=(1, len(columns)),
         )  # fmt: skip
         grid = figure.add_gridspec(len(columns), 1, height_ratios=counts)
         # the mean height of the panels is what distances are fractions of
@@ -86,7 +94,7 @@ def plot_effects(fit: Fit, predictions: RowPredictions | None = None) -> Figure:
         for i, column in enumerate(columns):
             ax = figure.add_subplot(grid[i], sharex=axes[0] if axes else None)
             axes.append(ax)
-            _levels(ax, fit, column, predictions)
+            _levels(ax, fit, column, predictions, letters)
         _ratio_axis(axes[0].xaxis, axes[0].get_xlim(), predictions.logarithmic[observables(fit)[0]])
         axes[-1].set_xlabel(_residual_name(observables(fit)[0], predictions))
         key_below(figure, axes[0], 3)
@@ -94,7 +102,7 @@ def plot_effects(fit: Fit, predictions: RowPredictions | None = None) -> Figure:
     return figure
 
 
-def _levels(ax: Axes, fit: Fit, column: str, predictions: RowPredictions) -> None:
+def _levels(ax: Axes, fit: Fit, column: str, predictions: RowPredictions, letters: int) -> None:
     observable = observables(fit)[0]
     of_row = levels_of_rows(fit, column)
     others = [name for name in group_columns(fit) if name != column]
@@ -125,20 +133,21 @@ def _levels(ax: Axes, fit: Fit, column: str, predictions: RowPredictions) -> Non
             label="rows" if y_position == 0 else None,
         )  # fmt: skip
     ax.axvline(0.0, color="#1A1A1A", linewidth=0.8, linestyle=(0, (4, 3)))
-    ax.set_yticks(np.arange(len(names)), [_short(name) for name in names], parse_math=False)
+    ax.set_yticks(np.arange(len(names)), [_short(name, letters) for name in names], parse_math=False)
     ax.set_ylim(-0.7, len(names) - 0.3)
     ax.set_title(f"by {spoken_name(column)}", loc="left", pad=4.0)
     ax.grid(axis="x", color="#E2E2E2", linewidth=0.6)
     ax.set_axisbelow(True)
 
 
-def plot_residuals(fit: Fit, predictions: RowPredictions | None = None) -> Figure:
+def plot_residuals(fit: Fit, predictions: RowPredictions | None = None, width: str | None = None) -> Figure:
     """Draw what is left between data and model, effects of groups taken off, against the abscissa and the conditions.
 
     Parameters
     ----------
     fit : a fit with its problem
     predictions : from :func:`skinbayes.plot.rows.row_predictions`, to compute them once for several figures
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -149,11 +158,14 @@ def plot_residuals(fit: Fit, predictions: RowPredictions | None = None) -> Figur
     """
     title = "What is left between data and model"
     if fit.problem is None:
-        return sentence_figure(fit, title, GONE)
+        return sentence_figure(fit, title, GONE, width)
     abscissa = row_abscissa(fit.problem, np.median(fit.theta(), axis=0))
     if abscissa is None:
         return sentence_figure(
-            fit, title, "All rows have the same conditions: there is nothing to draw residuals against."
+            fit,
+            title,
+            "All rows have the same conditions: there is nothing to draw residuals against.",
+            width,
         )
     names = observables(fit)
     predictions = predictions or row_predictions(fit, fit.problem)
@@ -162,9 +174,10 @@ def plot_residuals(fit: Fit, predictions: RowPredictions | None = None) -> Figur
     if len(names) == 1:
         against |= {k: v for k, v in varying_conditions(fit.problem).items() if k not in against}
     pairs = [(name, x) for name in names for x in list(against)[:MOST_CONDITIONS]]
-    with look():
+    size = inches(width)
+    with look(size):
         figure = new_figure(
-            WIDTH,
+            size,
             0.55 + 2.15 * len(pairs),
             left=0.85,
             bottom=0.6,
@@ -237,5 +250,5 @@ def _ratio_axis(axis: Axis, limits: tuple[float, float], logarithmic: bool) -> N
     axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(float(f"{np.exp(value):.3g}"))))
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= 26 else name[:25] + "…"
+def _short(name: str, letters: int) -> str:
+    return name if len(name) <= letters else name[: letters - 1] + "…"

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 from skinbayes.plot.predictive import LEVELS, observables, observed_values
 from skinbayes.plot.profile_bands import curve_at_row
 from skinbayes.plot.rows import (
@@ -22,8 +23,19 @@ from skinbayes.plot.rows import (
     telling_columns,
 )
 from skinbayes.plot.scales import Scale, scale_for, ticks
-from skinbayes.plot.style import OBSERVED, POSTERIOR, key_below, look, new_figure, sentence_figure, set_title
+from skinbayes.plot.style import (
+    OBSERVED,
+    POSTERIOR,
+    SMALL,
+    inches,
+    key_below,
+    look,
+    new_figure,
+    sentence_figure,
+    set_title,
+)
 from skinbayes.plot.symbols import axis_name, spoken_name
+from skinbayes.vocabulary import LABELS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,13 +49,18 @@ COLUMNS = 3
 MOST_PANELS = 24
 """Levels drawn; of more, those with the most rows."""
 
-LONGEST = 30
-"""Letters of the name of a level above its panel."""
+LONGEST, LONGEST_SMALL = 30, 16
+"""Letters of the name of a level above its panel, in wide and in narrow figures."""
+
+USUAL = 7.8
+"""Width, inch."""
 
 OTHERS, TYPICAL = "#BDBDBD", "#5A5A5A"
 
 
-def plot_levels(fit: Fit, column: str | None = None, predictions: RowPredictions | None = None) -> Figure:
+def plot_levels(
+    fit: Fit, column: str | None = None, predictions: RowPredictions | None = None, width: str | None = None
+) -> Figure:
     """Draw the data of each level of a grouping column over what the model says of them.
 
     Parameters
@@ -51,6 +68,7 @@ def plot_levels(fit: Fit, column: str | None = None, predictions: RowPredictions
     fit : a fit with its problem
     column : grouping column, such as ``person``; the first with effects if omitted
     predictions : from :func:`skinbayes.plot.rows.row_predictions`, to compute them once for several figures
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -59,8 +77,18 @@ def plot_levels(fit: Fit, column: str | None = None, predictions: RowPredictions
         level's own rows joined in order of the abscissa – median, 25–75 % and 5–95 % of the posterior, with the effect of the
         level if it has one and without that of other columns. The thin line is a typical curve: the posterior median of the
         parameters at the row in the middle. A sentence if there is nothing to draw.
+
+    Raises
+    ------
+    InputError
+        ``column`` is no grouping column.
     """
     columns = telling_columns(fit)
+    if column is not None and column not in LABELS:
+        known = (
+            f"these data can be drawn by {', '.join(columns)}" if columns else "no column groups these data"
+        )
+        raise InputError(f"column: {column!r} is no grouping column; {known}")
     column = column or next(iter(columns), None)
     title = (
         f"Data and model, {spoken_name(column)} by {spoken_name(column)}"
@@ -69,30 +97,42 @@ def plot_levels(fit: Fit, column: str | None = None, predictions: RowPredictions
     )
     if fit.problem is None:
         return sentence_figure(
-            fit, title, "The model or its data are gone, so that no curve can be computed from this result."
+            fit,
+            title,
+            "The model or its data are gone, so that no curve can be computed from this result.",
+            width,
         )
     abscissa = row_abscissa(fit.problem, np.median(fit.theta(), axis=0))
     if column is None or column not in columns or abscissa is None:
         reason = "all rows have the same conditions" if abscissa is None else "no column groups them"
-        return sentence_figure(fit, title, f"The data cannot be drawn by group: {reason}.")
+        return sentence_figure(fit, title, f"The data cannot be drawn by group: {reason}.", width)
     view = _view(fit, fit.problem, column, abscissa, predictions or row_predictions(fit, fit.problem))
-    rows = -(-len(view.levels) // COLUMNS)
-    with look():
+    size = inches(width, USUAL)
+    below = 0.9 if size >= SMALL else 1.15
+    columns_drawn = COLUMNS if size >= SMALL else COLUMNS - 1
+    rows = -(-len(view.levels) // columns_drawn)
+    with look(size):
+        tall = 0.45 + below + (1.75 if size >= SMALL else 1.35) * rows
         figure = new_figure(
-            7.8, 1.35 + 1.75 * rows, left=0.75, right=0.12, bottom=0.9, top=0.6, between=(0.12, 0.32),
-            panels=(COLUMNS, rows),
+            size, tall, left=0.55 + 0.026 * size, right=0.12, bottom=below, top=0.6, between=(0.12, 0.32),
+            panels=(columns_drawn, rows),
         )  # fmt: skip
-        axes = figure.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False).reshape(-1)
+        axes = figure.subplots(rows, columns_drawn, sharex=True, sharey=True, squeeze=False).reshape(-1)
         for ax, level in zip(axes, view.levels, strict=False):
-            _panel(ax, view, level)
+            _panel(ax, view, level, LONGEST if size >= SMALL else LONGEST_SMALL)
         for ax in axes[len(view.levels) :]:
             ax.set_axis_off()
         # the lowest panel of each column has the numbers of the axis below it
-        for ax in axes[max(0, len(view.levels) - COLUMNS) : len(view.levels)]:
+        for ax in axes[max(0, len(view.levels) - columns_drawn) : len(view.levels)]:
             ax.tick_params(labelbottom=True)
         _dress(axes[0], view)
-        figure.supxlabel(view.x_label, y=0.47 / figure.get_size_inches()[1], fontsize=10.0, va="center")
-        figure.supylabel(view.y_label, x=0.02, fontsize=10.0)
+        figure.supxlabel(
+            view.x_label,
+            y=(below - 0.43) / figure.get_size_inches()[1],
+            fontsize=10.0 if size >= SMALL else 8.0,
+            va="center",
+        )
+        figure.supylabel(view.y_label, x=0.02, fontsize=10.0 if size >= SMALL else 8.0)
         key_below(figure, axes[0], 5)
         set_title(figure, fit, title)
     return figure
@@ -167,7 +207,7 @@ def _typical(fit: Fit, problem: Problem) -> tuple[FloatArray, FloatArray] | None
     return grid, curve[0]
 
 
-def _panel(ax: Axes, view: _View, level: str) -> None:
+def _panel(ax: Axes, view: _View, level: str, longest: int) -> None:
     own = view.of_row == level
     order = np.flatnonzero(own)[np.argsort(view.x[own], kind="stable")]
     x, bands = view.x[order], view.bands[:, order]
@@ -187,8 +227,10 @@ def _panel(ax: Axes, view: _View, level: str) -> None:
         x, view.y[order], "o", color=OBSERVED, markersize=3.6, markeredgecolor="white", markeredgewidth=0.4, label="measured"
     )  # fmt: skip
     effect = f"   {view.effects[level]}" if level in view.effects else ""
-    name = level if len(level) <= LONGEST else level[: LONGEST - 1] + "…"
-    ax.set_title(name + effect, fontsize=9.0, loc="left", pad=3.0, parse_math=False)
+    name = level if len(level) <= longest else level[: longest - 1] + "…"
+    ax.set_title(
+        name + effect, fontsize=9.0 if longest == LONGEST else 7.5, loc="left", pad=3.0, parse_math=False
+    )
     ax.grid(color="#ECECEC", linewidth=0.6)
     ax.set_axisbelow(True)
 

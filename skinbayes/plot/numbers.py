@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import floor, isfinite, log10
+from math import ceil, floor, isfinite, log10
 
 from skinbayes.units import format_quantity, parse_quantity
 
@@ -98,3 +98,20 @@ def percent(share: float) -> str:
     if 0.0 < share < 1e-3:
         return "less than 0.1 %"
     return f"{number(100.0 * share, 2)} %"
+
+
+def share(count: int, total: int) -> str:
+    """How many of some draws, in percent; none and all of them are said as what the draws can tell.
+
+    Examples
+    --------
+    >>> share(0, 4000), share(4000, 4000), share(2, 4000), share(1300, 4000)
+    ('less than 0.03 %', 'more than 99.97 %', '0.05 %', '32 %')
+    """
+    if 0 < count < total:
+        return f"{number(100.0 * count / total, 2)} %"
+    # the smallest share that so many draws can show, rounded up to one digit
+    exponent = floor(log10(100.0 / total) + 1e-12)
+    least = ceil(100.0 / total / 10.0**exponent - 1e-9) * 10.0**exponent
+    digits = max(0, -exponent)
+    return f"less than {least:.{digits}f} %" if count <= 0 else f"more than {100.0 - least:.{digits}f} %"

@@ -8,7 +8,17 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.scales import scale_for, ticks
-from skinbayes.plot.style import OBSERVED, POSTERIOR, PRIOR, WIDTH, key_below, look, new_figure, set_title
+from skinbayes.plot.style import (
+    OBSERVED,
+    POSTERIOR,
+    PRIOR,
+    SMALL,
+    inches,
+    key_below,
+    look,
+    new_figure,
+    set_title,
+)
 from skinbayes.plot.symbols import figure_text, spoken_name
 from skinbayes.vocabulary import lookup
 
@@ -22,15 +32,19 @@ if TYPE_CHECKING:
 MOST_LABELLED = 40
 """Up to so many rows each has its name; beyond, rows are ordered by prediction and have none."""
 
+LONGEST, LONGEST_SMALL = 24, 16
+"""Letters of the name of a row, on screens and in narrow figures."""
+
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
-def plot_predictive(fit: Fit) -> Figure:
+def plot_predictive(fit: Fit, width: str | None = None) -> Figure:
     """Draw observed values on their posterior predictive distributions.
 
     Parameters
     ----------
     fit : any fit
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -38,22 +52,23 @@ def plot_predictive(fit: Fit) -> Figure:
         For each row of data the median and the 25–75 % and 5–95 % ranges of data simulated from the posterior, noise
         included, and the observed value.
     """
-    return _plot(fit, "posterior_predictive", "Data against the fitted model", POSTERIOR)
+    return _plot(fit, "posterior_predictive", "Data against the fitted model", POSTERIOR, width)
 
 
-def plot_prior_predictive(fit: Fit) -> Figure:
+def plot_prior_predictive(fit: Fit, width: str | None = None) -> Figure:
     """Draw observed values on their prior predictive distributions: what the model expected before it saw the data.
 
     Parameters
     ----------
     fit : any fit
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
     matplotlib.figure.Figure
         As :func:`plot_predictive`, from the prior.
     """
-    return _plot(fit, "prior_predictive", "Data against what the priors allow", PRIOR)
+    return _plot(fit, "prior_predictive", "Data against what the priors allow", PRIOR, width)
 
 
 def predictive_quantiles(fit: Fit, group: str = "posterior_predictive") -> FloatArray:
@@ -102,23 +117,30 @@ def datum_names(fit: Fit) -> list[str]:
     return names if len(rows) == 1 else [f"{name}, {row}" for name in names for row in rows]
 
 
-def _plot(fit: Fit, group: str, title: str, colour: str) -> Figure:
+def _plot(fit: Fit, group: str, title: str, colour: str, width: str | None) -> Figure:
     names, rows = observables(fit), row_names(fit)
+    if rows == ["1"]:  # the number of a row that has no other is no name
+        rows = [""]
     count = len(rows)
     observed = observed_values(fit).reshape(len(names), count)
     quantiles = predictive_quantiles(fit, group).reshape(len(LEVELS), len(names), count)
-    with look():
+    size = inches(width)
+    longest = LONGEST if size >= SMALL else LONGEST_SMALL
+    with look(size):
         if count <= MOST_LABELLED:
-            margin = 0.25 + 0.085 * max(len(_shortened(name)) for name in rows)
+            letters = max(len(_shortened(name, longest)) for name in rows)
+            margin = 0.25 + (0.085 if size >= SMALL else 0.07) * letters
             height = 1.35 + 0.26 * max(count, 3) + (len(names) - 1) * (0.75 + 0.26 * count)
-            figure = new_figure(WIDTH, height, left=margin, bottom=0.85)
+            figure = new_figure(size, height, left=margin, bottom=0.85)
         else:
-            figure = new_figure(WIDTH, 3.6 + 3.0 * (len(names) - 1), left=0.75, bottom=0.85)
+            figure = new_figure(
+                size, 0.9 + 0.52 * size + 3.0 * (len(names) - 1), left=0.12 * size + 0.12, bottom=0.85
+            )
         panels = figure.subplots(len(names), 1, squeeze=False)[:, 0]
         if len(names) > 1:
             figure.subplots_adjust(hspace=0.75 / (0.26 * max(count, 3)) if count <= MOST_LABELLED else 0.35)
         for i, (name, ax) in enumerate(zip(names, panels, strict=True)):
-            _panel(ax, name, observed[i], quantiles[:, i], rows, colour)
+            _panel(ax, name, observed[i], quantiles[:, i], [_shortened(row, longest) for row in rows], colour)
         key_below(figure, panels[-1], 3)
         set_title(figure, fit, title)
     return figure
@@ -136,7 +158,7 @@ def _panel(
     bands, points = scale.shown(quantiles[:, order]), scale.shown(observed[order])
     label = scale.label(f"{spoken_name(name)} {figure_text(symbol)}")
     if count <= MOST_LABELLED:
-        _labelled(ax, bands, points, [_shortened(row) for row in rows], colour)
+        _labelled(ax, bands, points, rows, colour)
         axis: Axis = ax.xaxis
         ax.set_xlabel(label)
         if scale.logarithmic:
@@ -153,8 +175,8 @@ def _panel(
         ticks(axis, scale, low, high, most=5)
 
 
-def _shortened(name: str) -> str:
-    return name if len(name) <= 24 else name[:23] + "…"
+def _shortened(name: str, longest: int) -> str:
+    return name if len(name) <= longest else name[: longest - 1] + "…"
 
 
 def _labelled(ax: Axes, bands: FloatArray, points: FloatArray, names: list[str], colour: str) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.scales import Scale, scale_for, ticks
-from skinbayes.plot.style import POSTERIOR, PRIOR, WIDTH, key_below, look, new_figure, set_title
+from skinbayes.plot.style import POSTERIOR, PRIOR, inches, key_below, look, new_figure, set_title, width_of
 from skinbayes.plot.symbols import figure_symbol
 from skinbayes.plot.updates import fit_updates
 
@@ -28,12 +28,13 @@ VERDICTS = {
 }
 
 
-def plot_prior_posterior(fit: Fit) -> Figure:
+def plot_prior_posterior(fit: Fit, width: str | None = None) -> Figure:
     """Draw the densities of prior and posterior of each free parameter, per unit of its axis.
 
     Parameters
     ----------
     fit : any fit
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -44,9 +45,10 @@ def plot_prior_posterior(fit: Fit) -> Figure:
     updates = fit_updates(fit)
     columns = 1 if len(names) == 1 else 2
     rows = -(-len(names) // columns)
-    with look():
+    size = inches(width)
+    with look(size):
         figure = new_figure(
-            WIDTH, 0.6 + 1.5 * rows + 0.3, top=0.6, bottom=0.85, between=(0.3, 0.75), panels=(columns, rows)
+            size, 0.6 + 1.5 * rows + 0.3, top=0.6, bottom=0.85, between=(0.3, 0.75), panels=(columns, rows)
         )
         axes = np.atleast_1d(figure.subplots(rows, columns, squeeze=False)).reshape(-1)
         for ax, label in zip(axes, names, strict=False):
@@ -87,7 +89,7 @@ def _limits(ax: Axes, scale: Scale, *groups: FloatArray) -> None:
     if scale.logarithmic:
         ax.set_xscale("log")
     ax.set_xlim(low, high)
-    ticks(ax.xaxis, scale, low, high)
+    ticks(ax.xaxis, scale, low, high, most=4 if ax.get_position().width * width_of(ax) > 2.0 else 3)
 
 
 def smooth_density(values: FloatArray, logarithmic: bool) -> tuple[FloatArray, FloatArray]:

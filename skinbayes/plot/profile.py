@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.profile_bands import Band, profile_bands
 from skinbayes.plot.rows import abscissa_of_rows
@@ -16,11 +17,14 @@ from skinbayes.plot.style import (
     OBSERVED,
     POSTERIOR,
     SERIES,
-    WIDTH,
+    inches,
+    letters_of_key,
     look,
     new_figure,
     sentence_figure,
     set_title,
+    width_of,
+    wrapped,
 )
 from skinbayes.plot.symbols import axis_name, figure_text
 from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
@@ -41,13 +45,14 @@ TITLES = {
 """Titles of figures of several curves by their abscissa."""
 
 
-def plot_profile(fit: Fit, abscissa: str | None = None) -> Figure:
+def plot_profile(fit: Fit, abscissa: str | None = None, width: str | None = None) -> Figure:
     """Draw the curves that the forward model offers, with posterior median and bands, and the data that lie on them.
 
     Parameters
     ----------
     fit : a fit with its problem
     abscissa : quantity on the common axis, one of :func:`profile_abscissas`; the first if omitted
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -56,29 +61,43 @@ def plot_profile(fit: Fit, abscissa: str | None = None) -> Figure:
         where more than four differ, those that end lowest, in the middle and highest. Bands hold 90 %, for a single curve
         also 50 % of the posterior; scatter and effects of groups are not in them. Dots are the data, with their standard
         deviations where these are known. A sentence if there is nothing to draw.
+
+    Raises
+    ------
+    InputError
+        The forward model has no curve against ``abscissa``.
     """
     title = "Curves of the model"
     if fit.problem is None:
         return sentence_figure(
-            fit, title, "The model or its data are gone, so that no curve can be computed from this result."
+            fit,
+            title,
+            "The model or its data are gone, so that no curve can be computed from this result.",
+            width,
         )
     offered = profile_abscissas(fit.problem)
+    if abscissa is not None and abscissa not in offered:
+        known = f"it has curves against {', '.join(offered)}" if offered else "it has no curves"
+        raise InputError(
+            f"abscissa: the forward model '{fit.problem.forward.name}' has no curve against {abscissa!r}; {known}"
+        )
     if not offered:
-        return sentence_figure(fit, title, f"The forward model '{fit.problem.forward.name}' has no curves.")
+        return sentence_figure(
+            fit, title, f"The forward model '{fit.problem.forward.name}' has no curves.", width
+        )
     abscissa = abscissa or offered[0]
     profiles = [profile for profile in fit.problem.profiles if profile.abscissa == abscissa]
-    if not profiles:
-        return sentence_figure(
-            fit, title, f"The model has no curve against {abscissa}; it has {', '.join(offered)}."
-        )
     drawn = [(profile, profile_bands(fit, fit.problem, profile)) for profile in profiles]
+    size = inches(width)
     lines = max(len(bands) for _, bands in drawn)
+    # long names of rows take several lines of a narrow key
+    rows = max(sum(1 + len(band.label) // letters_of_key(size) for band in bands) for _, bands in drawn)
     zoom = None if abscissa != "wavevector" else _smallest_wavevector(fit.problem)
-    key = 0.22 * (lines if lines > 1 else 1) + 0.1
+    key = 0.22 * (rows if lines > 1 else 1) + 0.1
     height, top = (3.1 if len(drawn) == 1 else 2.0), 0.45 if zoom is None else 0.9
-    with look():
+    with look(size):
         figure = new_figure(
-            WIDTH, height * len(drawn) + 0.15 * (len(drawn) - 1) + top + key + 0.5, left=0.85, right=0.3,
+            size, height * len(drawn) + 0.15 * (len(drawn) - 1) + top + key + 0.5, left=0.85, right=0.3,
             bottom=key + 0.5, top=top, between=(0.0, 0.15), panels=(1, len(drawn)),
         )  # fmt: skip
         axes = figure.subplots(len(drawn), 1, squeeze=False, sharex=True)[:, 0]
@@ -121,7 +140,7 @@ def _panel(
         )
         if single:
             ax.fill_between(x, q25, q75, color=colour, alpha=0.35, linewidth=0.0, label="25–75 %")
-        ax.plot(x, median, color=colour, label="median" if single else figure_text(band.label))
+        ax.plot(x, median, color=colour, label="median" if single else wrapped(ax, band.label))
     measured = _data(ax, fit, problem, profile, bands, x_scale, y_scale)
     for scale, setter in ((x_scale, ax.set_xscale), (y_scale, ax.set_yscale)):
         if scale.logarithmic:
@@ -132,7 +151,7 @@ def _panel(
     ax.grid(color="#E6E6E6", linewidth=0.6)
     ax.set_axisbelow(True)
     label = y_scale.label(y_name)
-    ax.set_ylabel(label if len(label) < 34 else label.replace(" $", "\n$", 1))
+    ax.set_ylabel(label if len(label) < 7 * width_of(ax) else label.replace(" $", "\n$", 1))
     return x_scale, *_ends(x_scale, bands, measured)
 
 

@@ -77,19 +77,23 @@ def curve_at_row(
     model = problem.model
     if profile.abscissa not in model.input_names() or profile.ordinate not in model.observables:
         return problem.profile(profile, theta, row)
-    # what else could say where on the curve a row lies must not
-    instead = {
+    given = problem.inputs(theta)
+    # what else could say where on the curve a row lies must not; what the abscissa needs beside it stays
+    ways = [
+        way for ways in model.alternatives() if any(profile.abscissa in way for way in ways) for way in ways
+    ]
+    beside = {
         name
-        for ways in model.alternatives()
-        if any(profile.abscissa in way for way in ways)
         for way in ways
+        if profile.abscissa in way and set(way) <= {*given, profile.abscissa}
         for name in way
     }
+    instead = {name for way in ways for name in way} - beside
     inputs = {
         name: np.ascontiguousarray(
             np.broadcast_to(value, (len(value), problem.conditions.n_rows))[:, row, np.newaxis]
         )
-        for name, value in problem.inputs(theta).items()
+        for name, value in given.items()
         if name not in instead
     }
     tables = replace(problem.tables, flow_curves=None)

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING, Any
+
+from skinbayes.errors import InputError
+from skinbayes.plot.symbols import figure_text
+from skinbayes.units import parse_quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +30,9 @@ PRIOR, POSTERIOR, OBSERVED = "#8A8A8A", BLUE, VERMILLION
 
 WIDTH = 5.2
 """Width of a figure, inch: shown 340 pixels wide on a phone, its text is still about 9 pixels high."""
+
+SMALL = 4.4
+"""Figures narrower than this, inch, are for a column of a journal or a phone: smaller text, fewer words."""
 
 NOT_CONVERGED = "NOT CONVERGED"
 
@@ -51,13 +60,56 @@ _SETTINGS: Any = {
 }
 
 
+_SMALL_SETTINGS: Any = {
+    "font.size": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 8.0,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.handlelength": 1.4,
+    "legend.columnspacing": 1.2,
+    "lines.linewidth": 1.2,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+}
+
+
 @contextmanager
-def look() -> Iterator[None]:
-    """Settings of all figures while one is drawn; those of the user come back afterwards."""
+def look(width: float = WIDTH) -> Iterator[None]:
+    """Settings of all figures while one of a width in inches is drawn; those of the user come back afterwards."""
     import matplotlib
 
-    with matplotlib.rc_context(_SETTINGS):
+    with matplotlib.rc_context({**_SETTINGS, **(_SMALL_SETTINGS if width < SMALL else {})}):
         yield
+
+
+def inches(width: str | None, usual: float = WIDTH) -> float:
+    """Width of a figure in inches.
+
+    Parameters
+    ----------
+    width : a length with its unit, such as ``"84 mm"``; None for the usual width
+    usual : the usual width, inch
+
+    Raises
+    ------
+    InputError
+        No length, or one that no page has.
+
+    Examples
+    --------
+    >>> inches("84 mm"), inches(None)
+    (3.3070866141732282, 5.2)
+    """
+    if width is None:
+        return usual
+    value = parse_quantity(width, "m", where="width")
+    if not 0.06 <= value <= 0.6:
+        raise InputError(
+            f"width: found {width!r}; expected 60 to 600 mm, such as the 84 mm of a column of a journal"
+        )
+    return value / 0.0254
 
 
 def new_figure(
@@ -95,12 +147,32 @@ def new_figure(
     return figure
 
 
+def width_of(ax: Axes) -> float:
+    """Width of the figure of a panel, inch."""
+    return float(ax.figure.bbox.width / ax.figure.dpi)
+
+
+def wrapped(ax: Axes, label: str) -> str:
+    """The name of a curve in as many lines as the width of the figure asks for."""
+    return "\n".join(figure_text(line) for line in wrap(label, letters_of_key(width_of(ax))))
+
+
+def letters_of_key(width: float) -> int:
+    """Letters of one line of a key with one column."""
+    return int(12 * width)
+
+
 def set_title(figure: Figure, fit: Fit, text: str) -> None:
-    """Write the title; a fit that has not converged is named so, in another colour and weight."""
+    """Write the title as large as fits; a fit that has not converged is named so, in another colour and weight."""
+    width, height = figure.get_size_inches()
+    title = text if fit.converged else f"{NOT_CONVERGED} – {text}"
+    letters = len(re.sub(r"\\mathregular|[${}_]", "", title))
+    # a letter is about 0.62 of its size wide, in bold 0.7
+    largest = 72.0 * (width - 0.2) / (letters * (0.62 if fit.converged else 0.7))
     figure.suptitle(
-        text if fit.converged else f"{NOT_CONVERGED} – {text}",
-        y=1.0 - 0.1 / figure.get_size_inches()[1],
-        fontsize=11.0,
+        title,
+        y=1.0 - 0.1 / height,
+        fontsize=min(11.0 if width >= SMALL else 9.0, largest),
         color="#1A1A1A" if fit.converged else "#B03A00",
         fontweight="normal" if fit.converged else "bold",
     )
@@ -109,17 +181,17 @@ def set_title(figure: Figure, fit: Fit, text: str) -> None:
 def key_below(figure: Figure, ax: Axes, columns: int) -> None:
     """The key of a figure at its lower edge."""
     handles, texts = ax.get_legend_handles_labels()
+    most = columns if width_of(ax) >= SMALL else min(columns, 2)
     figure.legend(
-        handles, texts, loc="lower center", ncols=columns, bbox_to_anchor=(0.5, 0.0), borderaxespad=0.2
+        handles, texts, loc="lower center", ncols=most, bbox_to_anchor=(0.5, 0.0), borderaxespad=0.2
     )
 
 
-def sentence_figure(fit: Fit, title: str, sentence: str) -> Figure:
+def sentence_figure(fit: Fit, title: str, sentence: str, width: str | None = None) -> Figure:
     """A figure that says in words why there is nothing to draw."""
-    from textwrap import fill
-
-    with look():
-        figure = new_figure(height=1.4)
+    size = inches(width)
+    with look(size):
+        figure = new_figure(size, 1.4)
         set_title(figure, fit, title)
-        figure.text(0.5, 0.4, fill(sentence, 60), ha="center", va="center", parse_math=False)
+        figure.text(0.5, 0.4, fill(sentence, int(11.5 * size)), ha="center", va="center", parse_math=False)
     return figure

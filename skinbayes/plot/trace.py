@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.plot.scales import scale_for, ticks
-from skinbayes.plot.style import SERIES, WIDTH, look, new_figure, set_title
+from skinbayes.plot.style import SERIES, SMALL, inches, look, new_figure, set_title
 from skinbayes.plot.symbols import figure_symbol
 
 if TYPE_CHECKING:
@@ -19,12 +19,13 @@ POINTS = 250
 """Draws shown of each ensemble."""
 
 
-def plot_trace(fit: Fit) -> Figure:
+def plot_trace(fit: Fit, width: str | None = None) -> Figure:
     """Draw the draws of each free parameter against time, one ensemble beside the other.
 
     Parameters
     ----------
     fit : any fit
+    width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
 
     Returns
     -------
@@ -36,9 +37,15 @@ def plot_trace(fit: Fit) -> Figure:
     chains, length = (fit.groups["posterior"].sizes[d] for d in ("chain", "draw"))
     step = max(1, length // POINTS)
     shown = len(range(0, length, step))
-    with look():
+    size = inches(width)
+    with look(size):
         figure = new_figure(
-            WIDTH, 1.0 + 1.05 * len(names), left=0.95, top=0.4, between=(0.0, 0.2), panels=(1, len(names))
+            size,
+            1.0 + 1.05 * len(names),
+            left=0.95 if size >= SMALL else 0.9,
+            top=0.4,
+            between=(0.0, 0.2),
+            panels=(1, len(names)),
         )
         axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
         for ax, label in zip(axes, names, strict=True):
@@ -63,7 +70,7 @@ def plot_trace(fit: Fit) -> Figure:
             if high > low:
                 ticks(ax.yaxis, scale, low, high, most=3)
             ax.set_ylabel(scale.label(figure_symbol(fit, label)).replace(" [", "\n["))
-            ax.yaxis.set_label_coords(-0.14, 0.5)
+            ax.yaxis.set_label_coords(-(0.57 if size >= SMALL else 0.5) / (size - 1.15), 0.5)
         axes[-1].set_xlim(-0.5, chains * shown - 0.5)
         axes[-1].set_xticks([(i + 0.5) * shown for i in range(chains)], [f"{i + 1}" for i in range(chains)])
         axes[-1].tick_params(axis="x", length=0)

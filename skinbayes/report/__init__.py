@@ -2,5 +2,6 @@
 
 from skinbayes.report.digest import digest
 from skinbayes.report.page import write_report
+from skinbayes.report.remarks import remarks
 
-__all__ = ["digest", "write_report"]
+__all__ = ["digest", "remarks", "write_report"]

@@ -11,6 +11,7 @@ import numpy as np
 
 from skinbayes.plot import (
     plot_corner,
+    plot_data,
     plot_effects,
     plot_levels,
     plot_predictive,
@@ -19,6 +20,7 @@ from skinbayes.plot import (
     plot_residuals,
     plot_trace,
 )
+from skinbayes.plot.data import varying
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.profile import profile_abscissas
 from skinbayes.plot.rows import group_columns, row_abscissa, row_predictions, telling_columns
@@ -70,12 +72,12 @@ class Drawing:
     Attributes
     ----------
     key : identifier on the page
-    draw : makes the figure of a fit
+    draw : makes the figure of a fit; ``width`` is its width as text, None for that of a screen
     heading, alternative, caption : texts
     """
 
     key: str
-    draw: Callable[[Fit], Figure]
+    draw: Callable[..., Figure]
     heading: str
     alternative: str
     caption: str
@@ -85,6 +87,7 @@ def drawings(fit: Fit) -> list[Drawing]:
     """All figures of a page, in its order: data first, the sampler last."""
     problem = fit.problem
     return [
+        *_data(fit),
         _predictive(fit),
         *(
             []
@@ -93,6 +96,20 @@ def drawings(fit: Fit) -> list[Drawing]:
         ),
         *_sampled(),
     ]
+
+
+def _data(fit: Fit) -> Iterator[Drawing]:
+    """Data against the condition that varies; where nothing varies, data row by row come first."""
+    found = varying(fit)
+    if found is None:
+        return
+    name = spoken_name(found[0])
+    yield Drawing(
+        "data", plot_data, f"Data and model against {name}",
+        f"Measured values against {name}, over what the fitted model predicts.",
+        "Dots are measured. The line is the median of the model, the band around it holds 90 % of the posterior. Pale bars hold "
+        "90 % of what repeated measurements would give: nine dots in ten should lie on them, on both sides all along the axis.",
+    )  # fmt: skip
 
 
 def _predictive(fit: Fit) -> Drawing:

@@ -17,13 +17,36 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 PAGE_DENSITY = 92
-"""Pixels of the page for an inch of a large figure, so that its text is as large as that of the others."""
+"""Pixels of the page for an inch of a figure."""
 
 MOST_PIXELS = 1800
-"""Width of a large figure, image pixels: two for each pixel of the page, less where it has many panels."""
+"""Width of an image of pixels: two for each pixel of the page, less where it has many panels."""
 
 LARGE = 6.5
-"""Width above which a figure is not shrunk to the page but scrolls, inch."""
+"""Width above which a figure is made of pixels and may be wider than the text, inch."""
+
+MOST_VECTOR_PANELS = 12
+"""Figures with more panels are made of pixels."""
+
+NARROW = "84 mm"
+"""Width of the figures for phones, that of a column of a journal."""
+
+
+@dataclass(frozen=True)
+class Image:
+    """One drawing of a figure.
+
+    Attributes
+    ----------
+    kind : media type of the image: vectors, or pixels if there is much to draw
+    data : the image as base64
+    width, height : on the page, pixels
+    """
+
+    kind: str
+    data: str
+    width: int
+    height: int
 
 
 @dataclass(frozen=True)
@@ -34,23 +57,17 @@ class Picture:
     ----------
     key : identifier on the page
     heading, alternative, caption : texts
-    kind : media type of the image: vectors, or pixels if there is much to draw
-    data : the image as base64
-    width, height : on the page, pixels
-    large : True if it must not be shrunk to the width of a phone
-    narrowest : width below which a large figure scrolls rather than shrinks, pixels
+    wide, narrow : for screens and paper, and for phones
+    large : True if it may be wider than the text
     """
 
     key: str
     heading: str
     alternative: str
     caption: str
-    kind: str
-    data: str
-    width: int
-    height: int
+    wide: Image
+    narrow: Image
     large: bool
-    narrowest: int
 
 
 def pictures(fit: Fit) -> dict[str, Picture]:
@@ -59,22 +76,27 @@ def pictures(fit: Fit) -> dict[str, Picture]:
 
 
 def _picture(fit: Fit, drawing: Drawing) -> Picture:
-    figure, alternative = drawing.draw(fit), drawing.alternative
-    width, height = (float(size) for size in figure.get_size_inches())
-    large = width > LARGE
-    if not fit.converged:
-        alternative = f"NOT CONVERGED. {alternative}"
+    alternative = drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}"
+    wide = drawing.draw(fit, width=None)
     return Picture(
         key=drawing.key,
         heading=drawing.heading,
         alternative=alternative,
         caption=drawing.caption,
-        kind="image/png" if large else "image/svg+xml",
-        data=b64encode(_pixels(figure, width) if large else _vectors(figure)).decode("ascii"),
+        wide=_image(wide),
+        narrow=_image(drawing.draw(fit, width=NARROW)),
+        large=float(wide.get_size_inches()[0]) > LARGE,
+    )
+
+
+def _image(figure: Figure) -> Image:
+    width, height = (float(size) for size in figure.get_size_inches())
+    pixels = len(figure.axes) > MOST_VECTOR_PANELS or width > LARGE
+    return Image(
+        kind="image/png" if pixels else "image/svg+xml",
+        data=b64encode(_pixels(figure, width) if pixels else _vectors(figure)).decode("ascii"),
         width=int(width * PAGE_DENSITY),
         height=int(height * PAGE_DENSITY),
-        large=large,
-        narrowest=int(0.75 * width * PAGE_DENSITY),
     )
 
 
@@ -84,7 +106,7 @@ def _pixels(figure: Figure, width: float) -> bytes:
         figure.savefig(
             buffer,
             format="png",
-            dpi=min(2 * PAGE_DENSITY, int(MOST_PIXELS / width)),
+            dpi=min(3 * PAGE_DENSITY, int(MOST_PIXELS / width)),
             pil_kwargs={"compress_level": 9},
         )
     return buffer.getvalue()

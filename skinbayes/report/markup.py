@@ -11,6 +11,10 @@ _DOI = re.compile(r"(?:https://(?:dx\.)?doi\.org/)?(10\.[0-9]{4,9}/[^\s,;)&<>\"'
 _POWER = re.compile(r"\^(?:\(([^()<>&;]+)\)|(-?[0-9.]*[0-9]))")
 
 
+_UNIT = re.compile(r"(?<=[0-9]) (%|[kMGTmµn]?(?:Pa|N|m|s)\b)")
+"""A number and its unit stay in one line."""
+
+
 def symbols(text: str) -> str:
     """Set subscripts and powers: ``σ_f / E0^(1/2)``.
 
@@ -19,7 +23,8 @@ def symbols(text: str) -> str:
     >>> print(symbols("σ_f < E0^2"))
     σ<sub>f</sub> &lt; E<sub>0</sub><sup>2</sup>
     """
-    marked = SUBSCRIPT.sub(lambda m: f"{m.group(1)}<sub>{m.group(2) or m.group(3)}</sub>", escape(text))
+    kept = _UNIT.sub(lambda m: f"\u00a0{m.group(1)}", escape(text))
+    marked = SUBSCRIPT.sub(lambda m: f"{m.group(1)}<sub>{m.group(2) or m.group(3)}</sub>", kept)
     return _POWER.sub(lambda m: f"<sup>{m.group(1) or m.group(2)}</sup>", marked)
 
 

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import cannot_write
-from skinbayes.plot.predictive import observables, observed_values
-from skinbayes.plot.symbols import spoken_name
-from skinbayes.report import quality, sentences, tables
+from skinbayes.plot.predictive import observed_values
+from skinbayes.report import opening, quality, sentences, tables
 from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.markup import links, symbols
 from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.validity import validity_sentences
-from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
     from skinbayes.comparison import Yardsticks
@@ -79,7 +77,6 @@ def render(fit: Fit, yardsticks: Yardsticks | None = None) -> str:
 def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
     """Everything the template shows, as text."""
     check = None if fit.problem is None else fit.problem.check()
-    together, everything = _combinations(fit, check)
     shown, folded = tables.derived_rows(fit)
     drawn, groups = pictures(fit), group_sentences(fit)
     return {
@@ -87,20 +84,28 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "name": fit.name,
         "description": str(fit.provenance["description"]),
         "converged": fit.converged,
+        "data_name": opening.data_name(fit),
+        "question": opening.question(fit),
+        "answer": opening.answer(fit),
+        "unanswered": opening.unanswered(fit),
+        "fits": quality.verdict(fit),
+        "misfit": quality.examine(fit).misfit,
+        "sampling": quality.sampling(fit),
+        "first": next(iter(drawn)),
+        "kept": fit.groups["posterior"].sizes["chain"] * fit.groups["posterior"].sizes["draw"],
         "missing": [sentences.with_symbols(fit, sentence) for sentence in quality.missing(fit)],
-        "setting": _setting(fit),
         "learnt": sentences.learnt(fit),
         "products": sentences.learnt_products(fit),
         "not_learnt": sentences.not_learnt(fit),
         "ridges": ridge_sentences(fit),
         "disagreements": sentences.disagreements(fit),
-        "combinations": together,
-        "check": everything,
+        "combinations": _combinations(fit, check),
+        "scatter": sentences.scatter(fit),
         "parameters": tables.parameter_rows(fit),
         "derived": shown,
         "derived_folded": folded,
         "pictures": drawn,
-        "figures": [key for key in drawn if not (groups and key == "effects")],
+        "figures": [key for key in list(drawn)[1:] if not (groups and key == "effects")],
         "groups": groups,
         "effects": effect_rows(fit),
         "validity": validity_sentences(fit),
@@ -113,6 +118,7 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "settings": tables.settings(fit),
         "model_text": str(fit.provenance["model_text"]),
         "references": fit.cite(),
+        "bibtex": "\n\n".join(fit.cite("bibtex")),
     }
 
 
@@ -133,29 +139,15 @@ def _yardsticks(yardsticks: Yardsticks | None) -> dict[str, Any]:
     }
 
 
-def _setting(fit: Fit) -> str:
-    described = []
-    for observable in observables(fit):
-        known = lookup(observable)
-        described.append(f"{spoken_name(observable)}{f' {known.symbol}' if known else ''}")
-    count = len(observed_values(fit))
-    values = "1 value" if count == 1 else f"{count} values"
-    parameters = "1 parameter" if len(fit.names) == 1 else f"{len(fit.names)} parameters"
-    *most, last = described
-    listed = f"{', '.join(most)} and the {last}" if most else last
-    return f"{values} of the {listed} informed {parameters}."
-
-
-def _combinations(fit: Fit, check: CheckReport | None) -> tuple[list[str], list[str]]:
-    """What all data together can tell, and everything that the check before sampling says about it."""
+def _combinations(fit: Fit, check: CheckReport | None) -> list[str]:
+    """Combinations of simple form that all data together determine, and changes of parameters that they cannot notice."""
     if check is None or check.identifiability is None:
-        return [], []
+        return []
     found = check.identifiability
-    together, everything = found.joint.sentences(), found.sentences()
-    return (
-        [sentences.with_symbols(fit, sentence) for sentence in together],
-        [sentences.with_symbols(fit, sentence) for sentence in everything],
-    )
+    known = [c for c in found.joint.combinations if c.constant and len(c.exponents) > 1]
+    said = [f"{combination.phrase()} is determined." for combination in known]
+    said += [freedom.sentence() for freedom in found.freedoms if freedom.constant]
+    return [sentences.with_symbols(fit, sentence) for sentence in said]
 
 
 def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
@@ -192,7 +184,7 @@ def data_origin(fit: Fit) -> dict[str, Any]:
         "spread",
     )
     return {
-        "key": str(known.get("key", "")),
+        "key": opening.data_name(fit),
         "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
         "sha256": str(known.get("sha256", "")),
         **{name: str(origin.get(name) or "") for name in texts},

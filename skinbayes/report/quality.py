@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
-from skinbayes.plot.numbers import number, percent
+from skinbayes.plot.numbers import number, percent, quantity, share
 from skinbayes.plot.predictive import (
     datum_names,
     observables,
@@ -16,7 +16,10 @@ from skinbayes.plot.predictive import (
     predictive_quantiles,
 )
 from skinbayes.plot.rows import group_columns
+from skinbayes.plot.symbols import spoken_name
 from skinbayes.report.words import and_list, plural
+from skinbayes.statistics.noise_families import noise_family
+from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -30,52 +33,149 @@ SURPRISING = 0.01
 MOST_NAMED = 6
 
 
-def agreement(fit: Fit) -> list[str]:
-    """Whether the fitted model reproduces the data it was fitted to.
+@dataclass(frozen=True)
+class Agreement:
+    """How the data lie among what the fitted model predicts for them.
 
-    Coverage of predictive intervals, rows in the tails, and posterior predictive p-values of mean and scatter (Gelman,
-    Meng & Stern 1996, Statistica Sinica 6:733).
+    Attributes
+    ----------
+    count, wide, narrow : data, and those of them in the 5–95 % and in the 25–75 % range of their predictions
+    few_inside : True if so few in the 5–95 % range would come about by chance less than once in a hundred times
+    far : places of the data that the predictions hardly ever reach, the farthest first
+    statistics : name of a statistic of all data to the number of simulated data sets above it, and of all
     """
-    observed = observed_values(fit)
-    quantiles = predictive_quantiles(fit)
+
+    count: int
+    wide: int
+    narrow: int
+    few_inside: bool
+    far: tuple[int, ...]
+    statistics: dict[str, tuple[int, int]]
+
+    @property
+    def missed(self) -> list[str]:
+        """The statistics that the model does not reproduce."""
+        return [name for name, (above, total) in self.statistics.items() if not 0.05 <= above / total <= 0.95]
+
+    @property
+    def misfit(self) -> bool:
+        """Whether anything speaks against the model."""
+        return self.few_inside or bool(self.far or self.missed)
+
+
+def examine(fit: Fit) -> Agreement:
+    """Hold the data against the posterior predictive draws.
+
+    Coverage of predictive intervals, data in the tails, and posterior predictive p-values of mean and scatter (Gelman, Meng &
+    Stern 1996, Statistica Sinica 6:733). A datum counts as far out if less than 1 % of its predictions lie beyond it, or, of
+    many data, so few that one such datum among all has a chance of 5 %.
+    """
+    from scipy.stats import binom
+
+    observed, quantiles, draws = observed_values(fit), predictive_quantiles(fit), predictive_draws(fit)
     count = len(observed)
     wide = int(((quantiles[0] <= observed) & (observed <= quantiles[4])).sum())
-    narrow = int(((quantiles[1] <= observed) & (observed <= quantiles[3])).sum())
-    said = [
-        f"{_of(wide, count)} in the 5–95 % range of what the fitted model predicts, {narrow} in the 25–75 % range; "
-        f"about {number(0.9 * count, 2)} and {number(0.5 * count, 2)} would be expected of a model that is right."
-    ]
-    draws = predictive_draws(fit)
-    share = (draws < observed).mean(axis=0)
-    tails = np.minimum(share, 1.0 - share)
-    far = [i for i in np.argsort(tails) if tails[i] < SURPRISING]
-    if far:
-        names = datum_names(fit)
-        listed = ", ".join(names[i] for i in far[:MOST_NAMED])
-        more = f" and {len(far) - MOST_NAMED} more" if len(far) > MOST_NAMED else ""
+    below = (draws < observed).mean(axis=0)
+    tails = np.minimum(below, 1.0 - below)
+    far = tuple(int(i) for i in np.argsort(tails) if tails[i] < min(SURPRISING, 0.025 / count))
+    statistics: dict[str, tuple[int, int]] = {}
+    if count >= FEW and len(observables(fit)) == 1:
+        simulated = {"mean": draws.mean(axis=1), "scatter between rows": draws.std(axis=1, ddof=1)}
+        real = {"mean": observed.mean(), "scatter between rows": observed.std(ddof=1)}
+        statistics = {
+            name: (int((found > real[name]).sum()), len(found)) for name, found in simulated.items()
+        }
+    return Agreement(
+        count,
+        wide,
+        int(((quantiles[1] <= observed) & (observed <= quantiles[3])).sum()),
+        bool(binom.cdf(wide, count, 0.9) < 0.01),
+        far,
+        statistics,
+    )
+
+
+def verdict(fit: Fit) -> list[str]:
+    """Whether the model fits, in a few sentences; what only looks like a good fit is not praised."""
+    found = examine(fit)
+    inside = (
+        f"{found.wide} of {found.count} values lie in their 90 % ranges "
+        f"(about {number(0.9 * found.count, 2)} expected)"
+    )
+    if found.misfit:
+        why = [inside] if found.few_inside else []
+        if found.far:
+            why.append(f"{_rows(fit, found)} {'is' if len(found.far) == 1 else 'are'} far out")
+        why += [f"the {name} of the data is not reproduced" for name in found.missed]
+        said = [
+            f"The model misses something: {'; '.join(why)}. Do not use its values before it is clear what."
+        ]
+    elif found.count < FEW:
+        said = [
+            "Hardly tested: almost any model with as many parameters agrees with "
+            f"{'one value' if found.count == 1 else f'{found.count} values'}."
+        ]
+    else:
+        said = [f"Single values, mean and scatter do not speak against it: {inside}."]
+    if scatter := free_scatter(fit):
+        start = "The" if found.misfit else "That is little: the"
         said.append(
-            f"Almost no simulated value is as far out as the observed one in {'row' if len(far) == 1 else 'rows'} "
-            f"{listed}{more}: the model does not explain {'it' if len(far) == 1 else 'them'}."
+            f"{start} scatter was fitted too ({scatter}) and takes in whatever the model misses. Look for dots that lie on "
+            "one side together."
+        )
+    return said
+
+
+def free_scatter(fit: Fit) -> str:
+    """The size of a fitted scatter, ``"16 % of μ"``; empty if it was given, or is none of one number."""
+    if "noise_scale" not in fit.names or len(observables(fit)) != 1:
+        return ""
+    name = observables(fit)[0]
+    known, value = lookup(name), float(np.median(fit.draws("noise_scale")))
+    if noise_family(str(fit.provenance["noise"][name])).logarithmic:
+        return f"{percent(value)} of {known.symbol if known else spoken_name(name)}"
+    return quantity(value, known.unit if known else "1")
+
+
+def agreement(fit: Fit) -> list[str]:
+    """Whether the fitted model reproduces the data it was fitted to, check by check."""
+    found = examine(fit)
+    said = [
+        f"{_of(found.wide, found.count)} in the 5–95 % range of what the fitted model predicts, {found.narrow} in the 25–75 % "
+        f"range; about {number(0.9 * found.count, 2)} and {number(0.5 * found.count, 2)} would be expected of a model that "
+        "is right."
+    ]
+    if found.far:
+        said.append(
+            f"Almost no simulated value is as far out as the observed one in {_rows(fit, found)}: the model does not explain "
+            f"{'it' if len(found.far) == 1 else 'them'}."
         )
     else:
         said.append("No single row lies where the fitted model would hardly ever put it.")
-    if count >= FEW and len(observables(fit)) == 1:
-        said += [
-            _statistic("mean", draws.mean(axis=1), float(observed.mean())),
-            _statistic("scatter between rows", draws.std(axis=1, ddof=1), float(observed.std(ddof=1))),
-        ]
+    said += [
+        f"The {name} of the data is {'not ' if name in found.missed else ''}reproduced: {share(above, total)} of simulated data "
+        "sets have a larger one (posterior predictive p-value; near 0 % or 100 % means misfit)."
+        for name, (above, total) in found.statistics.items()
+    ]
     if group_columns(fit):
         many = and_list([plural(column) for column in group_columns(fit)])
         said.append(
             f"These predictions know the effects of the very {many} that were measured: they say little about the theory, "
             "which is judged by the size of the effects and by what is predicted for others."
         )
-    if count < FEW:
+    if found.count < FEW:
         said.append(
-            f"With {count} {'datum' if count == 1 else 'data'} such agreement is weak evidence: almost any model with as "
-            "many parameters would show it."
+            f"With {found.count} {'datum' if found.count == 1 else 'data'} such agreement is weak evidence: almost any model "
+            "with as many parameters would show it."
         )
     return said
+
+
+def _rows(fit: Fit, found: Agreement) -> str:
+    names = datum_names(fit)
+    listed = ", ".join(names[i] for i in found.far[:MOST_NAMED])
+    more = f" and {len(found.far) - MOST_NAMED} more" if len(found.far) > MOST_NAMED else ""
+    return f"{'row' if len(found.far) == 1 else 'rows'} {listed}{more}"
 
 
 def _of(inside: int, count: int) -> str:
@@ -85,15 +185,6 @@ def _of(inside: int, count: int) -> str:
         f"{'All' if inside == count else inside} of {count} data lie"
         if inside
         else f"None of {count} data lies"
-    )
-
-
-def _statistic(name: str, simulated: FloatArray, observed: float) -> str:
-    above = float((simulated > observed).mean())
-    verdict = "reproduced" if 0.05 <= above <= 0.95 else "not reproduced"
-    return (
-        f"The {name} of the data is {verdict}: {percent(above)} of simulated data sets have a larger one "
-        "(posterior predictive p-value; near 0 % or 100 % means misfit)."
     )
 
 
@@ -109,9 +200,32 @@ def convergence(fit: Fit) -> list[str]:
         f"{percent(float(acceptance))} of the proposed moves were accepted; the model was evaluated {run['evaluations']} times.",
         f"The smallest effective sample size of a parameter is {number(float(ess), 3)}, the largest R-hat {r_hat:.3f}.",
     ]
+    if note := more_than_kept(fit):
+        said.append(note)
     if run["invalid"]:
         said.append(f"{run['invalid']} evaluations gave no finite value and counted as impossible.")
     return said
+
+
+def more_than_kept(fit: Fit) -> str:
+    """What an effective sample size above the number of stored draws is; empty if there is none."""
+    sizes = fit.groups["posterior"].sizes
+    kept = sizes["chain"] * sizes["draw"]
+    if max(fit.provenance["sampling"]["ess_bulk"]) <= kept:
+        return ""
+    return (
+        f"Effective sample sizes (ESS) count all steps of the run; {kept} draws of them are kept, nearly independent, and all "
+        "numbers here come from these."
+    )
+
+
+def sampling(fit: Fit) -> str:
+    """How the sampling went, in one line: it says nothing about the model."""
+    run = fit.provenance["sampling"]
+    return (
+        f"The computation {'converged' if fit.converged else 'has NOT converged'}: effective sample size at least "
+        f"{number(float(np.min(run['ess_bulk'])), 3)}, R-hat at most {np.max(run['r_hat']):.3f}."
+    )
 
 
 def missing(fit: Fit) -> list[str]:

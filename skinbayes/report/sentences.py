@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.plot.numbers import interval, number, percent, quantity
+from skinbayes.diagnose.rule import MUCH, SOMETHING, UNCHANGED
+from skinbayes.plot.numbers import interval, number, quantity, share
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
+from skinbayes.report.opening import is_scatter
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
@@ -74,7 +76,7 @@ def narrowing_sentence(fit: Fit, label: str) -> str:
 
 def learnt(fit: Fit) -> list[str]:
     """One entry for each parameter that the data updated, most informed first, then the model's named products."""
-    updates = [u for u in fit_updates(fit).values() if u.verdict != "not updated"]
+    updates = [u for u in fit_updates(fit).values() if u.verdict != "not updated" and not is_scatter(u.name)]
     updates.sort(key=lambda update: -update.contraction)
     said = []
     for update in updates:
@@ -88,24 +90,48 @@ def learnt(fit: Fit) -> list[str]:
 
 
 def learnt_products(fit: Fit) -> list[str]:
-    """One entry for each combination that the model file names."""
-    said = []
+    """One entry for each combination that the model file names, also where it differs from row to row."""
+    by_name: dict[str, list[str]] = {}
     for label in named_products(fit):
-        meaning = str(fit.groups["posterior"][label.partition("[")[0]].attrs.get("long_name", ""))
+        by_name.setdefault(label.partition("[")[0], []).append(label)
+    said = []
+    for name, labels in by_name.items():
+        meaning = str(fit.groups["posterior"][name].attrs.get("long_name", ""))
         explained = f" It is {meaning}." if meaning else ""
+        if len(labels) == 1:
+            (label,) = labels
+            said.append(
+                f"{title_name(fit, label)}: {value_sentence(fit, label)}. {narrowing_sentence(fit, label)}{explained}"
+            )
+            continue
+        found = np.array([np.quantile(fit.draws(label), [0.05, 0.5, 0.95]) for label in labels])
+        unit, low, high = fit.unit(name), float(found[:, 0].min()), float(found[:, 2].max())
+        medians = float(found[:, 1].min()), float(found[:, 1].max())
+        middle = (
+            f"{quantity(medians[0], unit)} in all {len(labels)} rows"
+            if medians[1] - medians[0] <= 1e-3 * abs(medians[1])
+            else f"{interval(*medians, unit)} from row to row ({len(labels)} rows)"
+        )
         said.append(
-            f"{title_name(fit, label)}: {value_sentence(fit, label)}. {narrowing_sentence(fit, label)}{explained}"
+            f"{title_name(fit, name)}: {middle}; the 90 % intervals lie between {interval(low, high, unit, joint=' and ')}."
+            f"{explained}"
         )
     return said
 
 
+def scatter(fit: Fit) -> list[str]:
+    """One entry for each parameter of noise and group effects that was fitted: what is not explained is no knowledge of skin."""
+    return [
+        f"{title_name(fit, label)}: {value_sentence(fit, label)}." for label in fit.names if is_scatter(label)
+    ]
+
+
 def _strength(update: PriorUpdate) -> str:
-    if update.verdict == "moved":
+    if update.ratio >= UNCHANGED:
         return "The data move it away from the middle of the prior but do not narrow it."
-    left = np.sqrt(max(0.0, 1.0 - update.contraction))
-    if left < 0.25:
+    if update.ratio < MUCH:
         return "The data say much about it."
-    if left < 0.7:
+    if update.ratio < SOMETHING:
         return "The data say something about it."
     return "The data narrow it a little; most of this is still the prior."
 
@@ -118,10 +144,13 @@ def disagreements(fit: Fit) -> list[str]:
         if tail >= STRAINED and update.verdict != "contradicted":
             continue
         side = "below" if update.prior_quantile < 0.5 else "above"
-        low, high = np.quantile(fit.draws(update.name, "prior"), [0.05, 0.95])
+        before = fit.draws(update.name, "prior")
+        low, high = np.quantile(before, [0.05, 0.95])
+        beyond = share(round(tail * len(before)), len(before))
+        beyond = beyond if beyond.startswith("less") else f"only {beyond}"
         said.append(
             f"{title_name(fit, update.name)}: half of the posterior lies {side} "
-            f"{quantity(float(np.median(fit.draws(update.name))), fit.unit(update.name))}, but only {percent(tail)} of the prior "
+            f"{quantity(float(np.median(fit.draws(update.name))), fit.unit(update.name))}, but {beyond} of the prior "
             f"(90 % of it between {interval(low, high, fit.unit(update.name), joint=' and ')}). "
             + (
                 "The data contradict the prior: question the prior, the model or the data before using the number."
@@ -137,5 +166,5 @@ def not_learnt(fit: Fit) -> list[str]:
     return [
         f"{title_name(fit, update.name)}: only the prior speaks. {value_sentence(fit, update.name)}, as before the data."
         for update in fit_updates(fit).values()
-        if update.verdict == "not updated"
+        if update.verdict == "not updated" and not is_scatter(update.name)
     ]

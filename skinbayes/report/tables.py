@@ -92,10 +92,12 @@ def derived_rows(fit: Fit) -> tuple[list[DerivedRow], list[DerivedRow]]:
             shown += rows
             continue
         folded += rows
-        medians = [float(np.median(fit.draws(label))) for label in labels]
-        low, high = min(medians), max(medians)
+        found = np.array([np.quantile(fit.draws(label), [0.05, 0.5, 0.95]) for label in labels])
+        low, high = float(found[:, 1].min()), float(found[:, 1].max())
+        ends = float(found[:, 0].min()), float(found[:, 2].max())
         unit = fit.unit(name)
         same = high - low <= 1e-9 * abs(high)
+        differ = bool((np.ptp(found, axis=0) > 1e-9 * abs(high)).any())
         shown.append(
             DerivedRow(
                 symbol=fit.symbol(name),
@@ -103,7 +105,7 @@ def derived_rows(fit: Fit) -> tuple[list[DerivedRow], list[DerivedRow]]:
                 median=f"{quantity(high, unit)} in all rows"
                 if same
                 else f"{interval(low, high, unit)}, by row",
-                interval="as one row" if same else "see below",
+                interval=_interval(*ends, unit, high) + (", over all rows" if differ else ""),
             )
         )
     return shown, folded
@@ -112,13 +114,19 @@ def derived_rows(fit: Fit) -> tuple[list[DerivedRow], list[DerivedRow]]:
 def _derived_row(fit: Fit, label: str) -> DerivedRow:
     low, median, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
     unit = fit.unit(label)
-    same = not high - low > 1e-6 * max(abs(low), abs(high))
     return DerivedRow(
         symbol=fit.symbol(label),
         name=spoken_name(label),
         median=quantity(median, unit),
-        interval="hardly varies" if same else interval(low, high, unit, typical=median),
+        interval=_interval(low, high, unit, median),
     )
+
+
+def _interval(low: float, high: float, unit: str, typical: float) -> str:
+    """An interval; one whose ends are the same to six digits is said to be no interval."""
+    if not high - low > 1e-6 * max(abs(low), abs(high)):
+        return "hardly varies"
+    return interval(low, high, unit, typical=typical)
 
 
 def fixed_rows(fit: Fit) -> list[FixedRow]:

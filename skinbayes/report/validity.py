@@ -98,11 +98,11 @@ def validity_sentences(fit: Fit) -> list[str]:
         )
     quiet = [flag.meaning for flag in found if not flag.flagged.any()]
     if quiet:
+        listed, seldom = "; ".join(quiet), percent(SELDOM)
         said.append(
-            f"Nothing {'more ' if said else ''}to say: no row is marked in {percent(SELDOM)} of the posterior or more for any of "
-            f"the other limits ({'; '.join(quiet)})."
-            if said or len(quiet) > 1
-            else f"Nothing to say: no row is marked in {percent(SELDOM)} of the posterior or more ({quiet[0]})."
+            f"No row is marked in {seldom} of the posterior or more for any of the other limits ({listed})."
+            if said
+            else f"Nothing to say: no row is marked in {seldom} of the posterior or more ({listed})."
         )
     if len(quiet) < len(found):
         said.append(

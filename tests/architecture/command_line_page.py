@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import re
 import shlex
 import tempfile
@@ -31,6 +32,7 @@ def run(command: str, folder: Path) -> str:
 
     arguments = [word for word in shlex.split(command)[1:] if not word.startswith(">")]
     out, err = io.StringIO(), io.StringIO()
+    os.environ.pop("COLUMNS", None)  # the page is as wide as output that is no terminal
     with contextlib.chdir(folder), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
             main(arguments)

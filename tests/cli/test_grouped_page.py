@@ -90,7 +90,7 @@ def test_page_shows_groups_and_escapes_their_names(grouped: Path, tmp_path: Path
     page = Page(text)
     said = words(page.text)
     assert [figure["id"] for figure in page.all("figure")] == [
-        "effects", "predictive", "by-person", "by-liquid", "profile-speed-viscosity-product", "residuals",
+        "data", "effects", "predictive", "by-person", "by-liquid", "profile-speed-viscosity-product", "residuals",
         "prior-posterior", "corner", "trace",
     ]  # fmt: skip
     for heading in ("How people differ:", "The theory's misfit from liquid to liquid:", "Beside the noise:"):

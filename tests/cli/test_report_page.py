@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from dataclasses import replace
 from functools import cache
@@ -96,6 +97,7 @@ def test_page_needs_nothing_from_elsewhere() -> None:
     assert not {"script", "link", "iframe", "object", "embed"} & {tag for tag, _ in page.elements}
     for _, attributes in page.elements:
         assert attributes.get("src", "data:image/").startswith("data:image/")
+        assert attributes.get("srcset", "data:image/").startswith("data:image/")
         assert attributes.get("href", "https://doi.org/10.").startswith("https://doi.org/10.")
         assert not [name for name in attributes if name.startswith("on")]
     style = text[text.index("<style>") : text.index("</style>")]
@@ -166,6 +168,33 @@ def test_what_only_the_prior_knows_is_said(tmp_path: Path) -> None:
     assert "σf / σY (dry)" in together
 
 
+def test_the_page_opens_with_question_answer_fit_and_one_picture() -> None:
+    text = page_of("converged")
+    said = words(Page(text).text)
+    opening = said[said.index("What do 2 values of friction coefficient") : said.index("What the data say")]
+    assert "say about frictional shear stress σf" in opening
+    assert re.search(r"σf/(σY|\(E0 s\)) = 0\.\d+ \(90 %: ", opening)
+    assert "only the prior speaks" in opening
+    assert "Does the model fit? Hardly tested" in opening
+    assert text.index("Does the model fit?") < text.index("<figure") < text.index("What the data say")
+    # convergence is a line about the computation, not a banner
+    assert "The computation converged" in opening and "state good" not in text and "--good" not in text
+
+
+def test_headings_go_down_one_level_at_a_time() -> None:
+    levels = [int(tag[1]) for tag, _ in Page(page_of("converged")).elements if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1 and levels.count(1) == 1
+    assert all(deeper <= level + 1 for level, deeper in itertools.pairwise(levels))
+
+
+def test_phones_get_a_drawing_of_their_own() -> None:
+    page = Page(page_of("converged"))
+    sources, images = page.all("source"), page.all("img")
+    assert len(sources) == len(images)
+    for source, image in zip(sources, images, strict=True):
+        assert "max-width" in source["media"] and int(source["width"]) < 340 < int(image["width"])
+
+
 MODEL = """
 title = '''{hostile}'''
 description = '''{hostile} described'''
@@ -223,7 +252,9 @@ def test_page_of_a_run_directory_and_of_a_bare_file_agree(tmp_path: Path) -> Non
         for i, source in enumerate((tmp_path / "run", moved))
     ]
     assert words(pages[0].text) == words(pages[1].text)
-    assert len(pages[1].all("img")) == 6  # eleven rows are enough for residuals against the load
+    # data against the load come first, and eleven rows are enough for residuals against it
+    assert pages[1].all("figure")[0]["id"] == "data"
+    assert len(pages[1].all("img")) == 7
 
 
 def test_page_of_a_fit_whose_model_is_gone(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from grouped_fit import finger_fit
 from made_up_fit import made_up_fit
 from matplotlib.figure import Figure
 
+from skinbayes.errors import InputError
 from skinbayes.fit import Fit, sample
 from skinbayes.plot import plot_effects, plot_levels, plot_profile, plot_residuals
 from skinbayes.plot.profile import profile_abscissas
@@ -138,7 +139,10 @@ def test_what_cannot_be_drawn_is_said(plot) -> None:
 
 def test_unknown_column_and_abscissa_are_said() -> None:
     assert "no column groups them" in words(plot_levels(finger_fit(), "state"))
-    assert "no curve against time" in words(plot_profile(finger_fit(), "time"))
+    with pytest.raises(
+        InputError, match="no curve against 'time'; it has curves against speed_viscosity_product"
+    ):
+        plot_profile(finger_fit(), "time")
 
 
 def test_columns_that_tell_rows_apart() -> None:
