@@ -33,12 +33,13 @@ def parse_settings(pairs: tuple[str, ...]) -> dict[str, str]:
 def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json: bool) -> None:
     """Evaluate the forward model at given parameters; free ones that are not set stand at their prior median."""
     from skinbayes.problem import load_problem
+    from skinbayes.problem.possible import has_value
 
     settings = parse_settings(pairs)
     problem = load_problem(model, settings=settings, conditions=conditions)
     theta = problem.prior_medians()
     prediction = problem.predict(theta)
-    sound = {name: _has_value(name, values) for name, values in prediction.items()}
+    sound = {name: has_value(name, values) for name, values in prediction.items()}
     bad = [name for name, values in sound.items() if not values.all()]
     if bad:
         row = int((~sound[bad[0]]).nonzero()[0][0]) + 1
@@ -57,14 +58,6 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
         })  # fmt: skip
         return
     _print(problem, theta, columns, prediction)
-
-
-def _has_value(name: str, values: Any) -> Any:
-    """Where a prediction is a number, or infinite where that means something (the Kelvin radius of saturated air)."""
-    from skinbayes.vocabulary import QUANTITIES
-
-    infinite = QUANTITIES[name].infinite_allowed
-    return (abs(values) < float("inf")) | (infinite & (values == float("inf")))
 
 
 def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[str, Any]) -> None:

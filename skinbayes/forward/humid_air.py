@@ -26,6 +26,7 @@ from skinbayes.forward.humid_air_inputs import (
     CURVE_INPUTS,
     HUMID_AIR_DEFAULTS,
     HUMID_AIR_INPUTS,
+    bridges_form,
     kelvin_gap_of,
     kelvin_radius_of,
     validate_humid_air,
@@ -116,7 +117,7 @@ def _flags(
 ) -> dict[str, NDArray[np.bool_]]:
     known = _with_pressing(inputs)
     pull, gap = _pull(known, tables, closure, table), kelvin_gap_of(known)
-    below = (is_below_molecule(gap) > 0) & (gap > 0)
+    below = (is_below_molecule(gap) > 0) & bridges_form(known)
     return {
         "strong_bridges": pull > STRONG_PULL * known["nominal_pressure"],
         "below_molecule": np.broadcast_to(below, pull.shape),

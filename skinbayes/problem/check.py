@@ -14,6 +14,7 @@ from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import NOISE_PARAMETERS
+from skinbayes.problem.possible import predicted_everywhere
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -127,10 +128,11 @@ def _priors(problem: Problem) -> tuple[str, ...]:
 
 def _predictions(problem: Problem, draws: FloatArray) -> tuple[tuple[str, ...], NDArray[np.bool_]]:
     """Sentences about finite predictions, and which of the draws have them."""
-    predicted = problem.predict(draws)
-    finite = np.all([np.isfinite(values).all(axis=-1) for values in predicted.values()], axis=0)
-    if not finite.any():
-        raise InputError(f"{problem.spec.path}: none of {len(draws)} prior draws gives a finite prediction")
+    finite, missing = predicted_everywhere(problem, draws)
+    if missing:
+        raise InputError(
+            f"{problem.spec.path}: none of {len(draws)} prior draws gives a finite prediction; {missing}"
+        )
     if not problem.free:
         return ("The prediction is finite at all conditions.",), finite
     if finite.all():

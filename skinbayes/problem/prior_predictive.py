@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.errors import InputError
+from skinbayes.problem.possible import predicted_everywhere
 
 if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
@@ -91,7 +92,11 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     simulated = problem.simulate(problem.draw_prior(rng, draws), rng)
     usable = simulated[np.isfinite(simulated).all(axis=1)]
     if len(usable) == 0:
-        raise InputError(f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}")
+        _, missing = predicted_everywhere(problem, problem.draw_prior(rng, 100))
+        reason = f"; {missing}" if missing else ""
+        raise InputError(
+            f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}{reason}"
+        )
     quantiles = np.quantile(usable, [0.05, 0.5, 0.95], axis=0)
     observed = np.asarray(problem.observed)
     below = (usable < observed).mean(axis=0)
