@@ -20,6 +20,7 @@ from skinbayes.forward.contact_inputs import (
     spectrum_of,
     validate_contact,
 )
+from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import capillary_state
 
 Closure = Literal["gaussian", "delta"]
@@ -73,7 +74,7 @@ def _explain(inputs: Inputs, tables: Tables) -> list[str]:
             "film_thickness is 0: as a film vanishes from a soft layer its pull grows without limit, and skin without water is "
             "not the end of this curve; 'contact-area' has dry skin."
         ]
-    return []
+    return explain_small_contact(inputs, tables)
 
 
 def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
@@ -119,6 +120,8 @@ def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardMo
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
         explain=_explain,
+        flags=small_contact_flags,
+        flag_meanings=SMALL_CONTACT,
         derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),

@@ -33,6 +33,7 @@ from skinbayes.forward.humid_air_inputs import (
     with_modulus,
 )
 from skinbayes.forward.humid_air_table import TabulatedPull, prepared_humid_air
+from skinbayes.forward.small_contact import SMALL_CONTACT, small_contact_flags
 from skinbayes.friction import friction_coefficient
 from skinbayes.wetting import MOLECULE_DIAMETER, capillary_state_in_humid_air, is_below_molecule
 
@@ -46,6 +47,7 @@ FLAGS = {
     "('humid-air' or 'humid-air-delta'), so rely neither on the value nor on the humidity at which contact is lost",
     "below_molecule": f"bridges span less than {MOLECULE_DIAMETER * 1e9:g} nm, the size of a water molecule, and are no more "
     "than a figure of speech",
+    **SMALL_CONTACT,
 }
 """Flags and what they say."""
 
@@ -121,6 +123,7 @@ def _flags(
     return {
         "strong_bridges": pull > STRONG_PULL * known["nominal_pressure"],
         "below_molecule": np.broadcast_to(below, pull.shape),
+        **small_contact_flags(inputs, tables),
     }
 
 

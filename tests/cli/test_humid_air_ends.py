@@ -86,7 +86,7 @@ def test_warm_skin_sees_drier_air(capsys):
         return outcome.document()["prediction"]["friction_coefficient"][0]
 
     warm = friction("relative_humidity=90 %", "air_temperature=20 degC", "surface_temperature=32 degC")
-    humidity = humidity_at_surface(0.9, 293.15, 305.15)
+    humidity = float(humidity_at_surface(0.9, 293.15, 305.15))
     assert warm == pytest.approx(friction(f"relative_humidity={humidity!r}", "temperature=32 degC"), rel=1e-9)
     assert warm < 0.5 * friction("relative_humidity=90 %")
     same = friction("relative_humidity=85 %", "air_temperature=25 degC", "surface_temperature=25 degC")
