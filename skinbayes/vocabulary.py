@@ -169,7 +169,7 @@ _ALL = (
     _closed("film_thickness", "d_film", "m", "average thickness of the water film"),
     _closed("evaporation_rate", "ḋ", "m/s", "thickness evaporated per time"),
     _closed("relative_humidity", "RH", "1", "relative humidity", 1.0),
-    Quantity("temperature", "T", "K", "temperature"),
+    Quantity("temperature", "T", "K", "temperature of air and skin, where both have the same"),
     _closed("time", "t", "s", "time"),
     Quantity(
         "kelvin_radius",
@@ -185,8 +185,8 @@ _ALL = (
     _closed("droplet_volume", "ΔV", "m^3", "volume of the droplet that wets the track"),
     Quantity("stroke_length", "L", "m", "length of the sliding track"),
     Quantity("contact_width", "D", "m", "width of the sliding track"),
-    Quantity("surface_temperature", "T_s", "K", "temperature of the water on the skin"),
-    Quantity("air_temperature", "T_a", "K", "temperature of the air"),
+    Quantity("surface_temperature", "T_s", "K", "temperature of the skin, or of the water on it"),
+    Quantity("air_temperature", "T_a", "K", "temperature of the air in which the humidity was measured"),
     Quantity("latent_heat", "Y", "J/kg", "latent heat of evaporation of water"),
     _closed("air_speed", "v_air", "m/s", "speed of the air over the water"),
     # drying

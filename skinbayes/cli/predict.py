@@ -78,7 +78,9 @@ _MOST_SENTENCES = 10
 
 def _without_value(problem: Any, theta: Any, prediction: dict[str, Any]) -> list[str]:
     """A sentence for each row that lacks a prediction: which, and why."""
-    sound = {name: _has_value(name, values) for name, values in prediction.items()}
+    from skinbayes.problem.possible import has_value
+
+    sound = {name: has_value(name, values) for name, values in prediction.items()}
     said: list[str] = []
     for row in range(problem.conditions.n_rows):
         lacking = [name for name, values in sound.items() if not values[row]]
@@ -89,14 +91,6 @@ def _without_value(problem: Any, theta: Any, prediction: dict[str, Any]) -> list
             others = f" (nor have {len(lacking) - 1} others)" if len(lacking) > 1 else ""
             said.append(f"{lacking[0]} has no finite value at row {row + 1}{others}: {because}")
     return said
-
-
-def _has_value(name: str, values: Any) -> Any:
-    """Where a prediction is a number, or infinite where that means something (the Kelvin radius of saturated air)."""
-    from skinbayes.vocabulary import QUANTITIES
-
-    infinite = QUANTITIES[name].infinite_allowed
-    return (abs(values) < float("inf")) | (infinite & (values == float("inf")))
 
 
 def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[str, Any]) -> None:

@@ -14,7 +14,8 @@ _TERMS = 8192  # of a block
 
 def as_rows(values: FloatArray, batch: tuple[int, ...]) -> FloatArray:
     """``values`` of shape ``(..., n)`` broadcast to ``batch`` and flattened to ``(rows, n)``."""
-    return np.ascontiguousarray(np.broadcast_to(values, (*batch, values.shape[-1]))).reshape(prod(batch), -1)
+    width = values.shape[-1]
+    return np.ascontiguousarray(np.broadcast_to(values, (*batch, width))).reshape(prod(batch), width)
 
 
 def blocks(rows: int, columns: int, width: int) -> Iterator[tuple[slice, slice]]:

@@ -19,7 +19,8 @@ def persson_contact_area(nominal_pressure: ArrayLike, variance: ArrayLike) -> Fl
 
     Returns
     -------
-    relative_contact_area : dimensionless, 0 … 1, broadcast shape; nan where an argument is impossible
+    relative_contact_area : dimensionless, 0 … 1, broadcast shape; 0 without load, else 1 without roughness; nan where an
+        argument is impossible
 
     References
     ----------
@@ -33,7 +34,14 @@ def persson_contact_area(nominal_pressure: ArrayLike, variance: ArrayLike) -> Fl
     pressure, width = np.asarray(nominal_pressure, dtype=np.float64), np.asarray(variance, dtype=np.float64)
     with np.errstate(all="ignore"):
         pressure = np.where(pressure >= 0, pressure, np.nan)
-        return np.asarray(erf(pressure / np.sqrt(width)))[()]
+        return np.asarray(erf(without_load(pressure / np.sqrt(width), pressure, width)))[()]
+
+
+def without_load(reach: FloatArray, pressure: FloatArray, width: FloatArray) -> FloatArray:
+    """``reach`` = p0/√V with 0 in place of 0/0, smooth bodies that nothing presses together; overwritten."""
+    if (unclear := np.isnan(reach)).any():
+        return np.where(unclear & (pressure == 0) & (width == 0), 0.0, reach)
+    return reach
 
 
 def relative_contact_area(

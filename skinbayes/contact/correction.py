@@ -103,6 +103,10 @@ def corrected_stress_variance(
     )
     with np.errstate(all="ignore"):
         ratio = width / np.square(np.where(pressure >= 0, pressure, np.nan))
+        if (unclear := np.isnan(ratio)).any():
+            # squares that under- or overflow: contact is complete without roughness, and vanishes under an infinite one
+            known = unclear & (pressure >= 0) & (pressure < np.inf) & (width >= 0)
+            ratio = np.where(known, np.where(width > 0, np.inf, 0.0), ratio)
         if gamma.size == 1:
             value = float(gamma.reshape(-1)[0])
             shape = np.broadcast_shapes(ratio.shape, gamma.shape)

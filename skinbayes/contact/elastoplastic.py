@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import erf, erfc
 
 from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.area import without_load
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_stress_variance
 from skinbayes.roughness._rules import gauss_unit
 
@@ -177,7 +178,8 @@ def _dimensionless(
     with np.errstate(all="ignore"):
         limit = np.where(limit > 0, limit, np.nan)
         root = np.sqrt(effective)
-        parameters = np.broadcast_arrays(pressure / limit, root / limit, pressure / root)
+        reach = without_load(pressure / root, pressure, root)
+        parameters = np.broadcast_arrays(pressure / limit, root / limit, reach)
     ratio, spread, reach = (x.reshape(-1) for x in parameters)
     return ratio, spread, reach, parameters[0].shape
 

@@ -102,7 +102,9 @@ def resolve_gaps(
     at_edges = _separation(pressure, area, variance, 1 / (q * effective_modulus(skin, q)), area_correction)
     # ū(ζ)/h_rms(ζ) varies slowly until it falls to 0 at the end
     height = np.sqrt(mean_square)[..., None, :]
-    ratio = join(at_edges / height[..., :-1:2], np.zeros(1))
+    above = height[..., :-1:2]
+    # a fractal part without length has no height: all of it is the end
+    ratio = join(np.where(above == 0, 0.0 * at_edges, at_edges / above), np.zeros(1))
     cuts = np.cumsum([0, *parts])
     pieces = [_halve(ratio[..., a : b + 1]) for a, b in pairwise(cuts)]
     separation = join(*(piece[..., :-1] for piece in pieces), np.zeros(1)) * height
@@ -128,14 +130,14 @@ def _separation(
     closing = closing_function(
         as_rows(area_correction[..., None], batch)[:, 0] if area_correction.ndim else area_correction
     )
-    local = np.log(pressure[..., None] / area[..., :-1:2]).reshape(variance.shape[0], -1, cells)
+    local = np.log(pressure[..., None] / area[..., :-1:2]).reshape(len(variance), pressure.shape[-1], cells)
     found = np.empty(local.shape)
     for rows, columns in blocks(len(local), local.shape[1], pairs.node.size):
         part = 2 * np.take(local[rows, columns], pairs.cell, axis=-1)
         terms = closing.of(rows)(log_above[rows, None] - part, np.exp(part) * inverse[rows, None])
         terms *= weight[rows, None]
         found[rows, columns] = np.add.reduceat(terms, pairs.start, axis=-1)
-    return found.reshape(*batch, -1, cells)
+    return found.reshape(*batch, found.shape[1], cells)
 
 
 def _weights(compliance: FloatArray, cells: int, pairs: _Pairs) -> FloatArray:
@@ -175,6 +177,8 @@ def _mean_square_above(spectrum: PowerSpectrum, q: FloatArray) -> FloatArray:
     inside = np.clip(points, with_axes(spectrum.wavevector_min, 1), with_axes(spectrum.wavevector_max, 1))
     density = np.square(points) * spectrum.power(inside)
     left, right = density[..., :-1], density[..., 1:]
-    shares = 2 * np.pi * left * np.diff(log_q) * exprel(np.log(right / left))
+    # places of a part without length are not ascending to the last bit
+    steps = np.maximum(np.diff(log_q), 0.0)
+    shares = 2 * np.pi * left * steps * exprel(np.log(right / left))
     above = join(np.cumsum(shares[..., ::-1], axis=-1)[..., ::-1], np.zeros(1))
     return above if not own.size else np.take(above, np.searchsorted(points, q), axis=-1)

@@ -24,6 +24,7 @@ CLOSURES = ("gaussian", "delta")
 
 _CAP = 2.5  # largest u₁ in units of ū
 _SHARPNESS = 4  # of the bend towards the cap
+_NARROWEST = 1e-300  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +118,7 @@ class GapDistribution:
             for rows, columns in blocks(len(gaps), gaps.shape[-1], weight.shape[-1]):
                 values = part(gaps[rows, columns, None], location[rows], np.sqrt(2) * width[rows])
                 total[rows, columns] = (weight[rows] * values).sum(axis=-1)
-            return total.reshape(*batch, -1) if found.ndim else total.reshape(batch)[()]
+            return total.reshape(*batch, gaps.shape[-1]) if found.ndim else total.reshape(batch)[()]
 
 
 def _share(gap: FloatArray, location: FloatArray, spread: FloatArray) -> FloatArray:
@@ -212,10 +213,11 @@ def gap_distribution(
             width = (height[..., 1:] + height[..., :-1]) / 2  # the average 1/h where h² falls linearly
         else:
             width = _spacing(location)
-        width = np.broadcast_to(width, location.shape)
+        # gaps of 0 have no width, and 0/0 no value
+        width = np.maximum(np.broadcast_to(width, location.shape), _NARROWEST)
         own = _volume(np.inf, location, np.sqrt(2) * width)
         scale = (mean / np.maximum((weight * own).sum(axis=-1), 1e-300))[..., None]
-        fields = [mean, cells.area[..., -1], scale * location, np.maximum(scale * width, 1e-300), weight]
+        fields = [mean, cells.area[..., -1], scale * location, np.maximum(scale * width, _NARROWEST), weight]
         if not pressure.ndim:
             fields = [fields[0][..., 0], fields[1][..., 0], *(x[..., 0, :] for x in fields[2:])]
         return GapDistribution(*(x[()] for x in fields))

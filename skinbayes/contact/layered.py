@@ -14,6 +14,8 @@ from skinbayes.roughness._fields import Floats, as_field, with_axes
 SATURATION = 10.0
 """qd above which S is taken as 1 when stresses are summed over wavevectors; S² − 1 is below 4e-7 there."""
 
+_DEEP = 400.0  # of qd, where e^(−2qd) is 0 in floating point
+
 
 @dataclass(frozen=True, eq=False)
 class LayeredSkin:
@@ -146,13 +148,20 @@ def _contrast(skin: LayeredSkin) -> _Contrast:
 def inverse_response(skin: LayeredSkin, wavevector: FloatArray, axes: int) -> FloatArray:
     """1/S(q) with ``axes`` new last axes for the wavevector, see `surface_response`; silences no warnings."""
     at_zero, ground, linear, product, four_m = (with_axes(x, axes) for x in _contrast(skin))
-    x = wavevector * with_axes(skin.layer_thickness, axes)
+    # beyond _DEEP the half-space is not felt, and inf times 0 has no value
+    x = np.minimum(wavevector * with_axes(skin.layer_thickness, axes), _DEEP)
     rise = np.expm1(-2 * x)  # −g
     bending = four_m * (x * (1 + rise))
     part = product * rise
     numerator = at_zero - part * (2 + rise) + bending
     denominator = ground + rise * (part - linear) - bending * x
     return np.asarray(denominator / numerator)
+
+
+def _wavevector(wavevector: ArrayLike) -> FloatArray:
+    """The wavevectors as an array, nan in place of negative ones."""
+    q = np.asarray(wavevector, dtype=np.float64)
+    return np.where(q < 0, np.nan, q)
 
 
 def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
@@ -169,7 +178,7 @@ def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    surface_response : dimensionless, batch shape of ``skin`` plus the axis of ``wavevector``
+    surface_response : dimensionless, batch shape of ``skin`` plus the axis of ``wavevector``; nan where an argument is impossible
 
     Notes
     -----
@@ -187,7 +196,7 @@ def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
     >>> print(surface_response(wet, [0.0, 1e5, 1e9]).round(6))
     [350.         1.703063   1.      ]
     """
-    q = np.asarray(wavevector, dtype=np.float64)
+    q = _wavevector(wavevector)
     with np.errstate(all="ignore"):
         return np.asarray(1 / inverse_response(skin, q, min(q.ndim, 1)))[()]
 
@@ -203,7 +212,7 @@ def effective_modulus(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
     Returns
     -------
     effective_modulus : Pa, batch shape of ``skin`` plus the axis of ``wavevector``; from E1* at q = 0 to E0*
-        at large q
+        at large q; nan where an argument is impossible
 
     References
     ----------
@@ -215,7 +224,7 @@ def effective_modulus(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
     >>> print(f"{effective_modulus(wet, 0.0):.1f} {effective_modulus(wet, 1e9):.0f}")
     26666.7 9333333
     """
-    q = np.asarray(wavevector, dtype=np.float64)
+    q = _wavevector(wavevector)
     axes = min(q.ndim, 1)
     layer = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), axes)
     with np.errstate(all="ignore"):

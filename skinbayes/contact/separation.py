@@ -105,4 +105,4 @@ def _sums(
         for total, value in zip(found, values, strict=True):
             value *= weight[rows]
             total[rows, columns] = value.sum(axis=-1)
-    return [total.reshape(*batch, -1) for total in found]
+    return [total.reshape(*batch, pressure.shape[1]) for total in found]

@@ -91,11 +91,13 @@ def _self_affine(
     slope = join(np.full(plateau_share.size + 1, 4.0), fractal_slope * np.ones(fractal_share.size + 1))
     width = np.diff(edges)[..., None]
     place = edges[..., :-1, None] + width * _INNER
-    flat = (*place.shape[:-2], -1)
+    flat = (*place.shape[:-2], place.shape[-2] * _INNER.size)
     stiffness = inverse_response(skin, np.exp(knee + place.reshape(flat)), 1)
     power = np.exp(slope[..., None] * place) * (width * _INNER_WEIGHTS)
-    terms = np.ascontiguousarray(power.reshape(*power.shape[:-2], -1) * np.square(stiffness))
-    sums = np.cumsum(terms.reshape(*terms.shape[:-1], -1, _INNER.size).sum(axis=-1), axis=-1)
+    terms = np.ascontiguousarray(
+        power * np.square(stiffness).reshape(*stiffness.shape[:-1], *place.shape[-2:])
+    )
+    sums = np.cumsum(terms.sum(axis=-1), axis=-1)
     modulus = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), 1)
     scale = np.pi * with_axes(spectrum.plateau_power, 1) * np.square(np.square(np.exp(knee)) * modulus)
     return np.exp(knee + edges[..., 1:]), stretch, scale * sums

@@ -25,6 +25,7 @@ from skinbayes.roughness._rules import gauss_unit
 _PER_UNIT = 64  # knots per unit of ℓ = −2 ln x
 _FIRST, _LAST = -6.5, 46.0
 _CELLS = round((_LAST - _FIRST) * _PER_UNIT)
+_NOTHING_LEFT = 800.0  # of p²/V, where e^(−p²/V) is 0 in floating point
 _POINTS, _POINT_WEIGHTS = gauss_unit(16)
 
 
@@ -50,6 +51,8 @@ class ClosingFunction(NamedTuple):
     def with_slope(self, log_ratio: FloatArray, square: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Q and dQ/dln p at constant V, dimensionless."""
         value, rise = self._scaled(log_ratio, slope=True)
+        # where V vanishes, as on a plateau without length, the square is inf and all of this 0
+        square = np.minimum(square, _NOTHING_LEFT)
         decay = np.exp(-square)
         return value * decay, -2 * (rise + square * value) * decay
 

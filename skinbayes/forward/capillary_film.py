@@ -20,6 +20,7 @@ from skinbayes.forward.contact_inputs import (
     spectrum_of,
     validate_contact,
 )
+from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import capillary_state
 
 Closure = Literal["gaussian", "delta"]
@@ -66,6 +67,16 @@ def _evaluate(inputs: Inputs, tables: Tables, closure: Closure) -> dict[str, Flo
     return along_rows(known, "film_thickness", partial(_bridged, tables=tables, closure=closure))
 
 
+def _explain(inputs: Inputs, tables: Tables) -> list[str]:
+    """Why there is no prediction."""
+    if (np.asarray(inputs["film_thickness"]) == 0).any():
+        return [
+            "film_thickness is 0: as a film vanishes from a soft layer its pull grows without limit, and skin without water is "
+            "not the end of this curve; 'contact-area' has dry skin."
+        ]
+    return explain_small_contact(inputs, tables)
+
+
 def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
     return FILMS
 
@@ -108,6 +119,9 @@ def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardMo
         optional=BRIDGED_SKIN_DEFAULTS,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
+        explain=_explain,
+        flags=small_contact_flags,
+        flag_meanings=SMALL_CONTACT,
         derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),

@@ -21,6 +21,7 @@ from skinbayes.forward.drying_inputs import (
     initial_film_of,
 )
 from skinbayes.forward.drying_table import prepared_drying
+from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import BridgeTable, drying_curve
 
 OBSERVABLES = ("friction_coefficient", "film_thickness", "relative_contact_area")
@@ -95,6 +96,9 @@ def drying_model(name: str, summary: str, closure: Closure) -> ForwardModel:
         costly=True,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
+        explain=explain_small_contact,
+        flags=small_contact_flags,
+        flag_meanings=SMALL_CONTACT,
         derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),

@@ -21,6 +21,7 @@ from skinbayes.forward.drying_inputs import (
     initial_film_of,
 )
 from skinbayes.forward.drying_table import prepared_drying
+from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import BridgeTable, DryingFeatures, drying_features
 
 OBSERVABLES = DryingFeatures._fields
@@ -72,7 +73,7 @@ def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
             "the film after wetting is thinner than that of the peak: friction falls from the start, and peak_time, before "
             "wetting, says when it would have peaked"
         )
-    return said
+    return said + explain_small_contact(inputs, tables)
 
 
 def features_model(name: str, summary: str, closure: Closure) -> ForwardModel:
@@ -88,6 +89,8 @@ def features_model(name: str, summary: str, closure: Closure) -> ForwardModel:
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
         explain=partial(_explain, closure=closure),
+        flags=small_contact_flags,
+        flag_meanings=SMALL_CONTACT,
         derived=pressure_and_slope,
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),

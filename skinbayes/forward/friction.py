@@ -15,6 +15,7 @@ from skinbayes.forward.contact_inputs import (
     validate_contact,
     variance_of,
 )
+from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.friction import friction_coefficient
 from skinbayes.roughness import rms_slope
 
@@ -46,6 +47,9 @@ MODEL = ForwardModel(
     optional=SKIN_DEFAULTS,
     evaluate=_evaluate,
     validate=validate_contact,
+    explain=explain_small_contact,
+    flags=small_contact_flags,
+    flag_meanings=SMALL_CONTACT,
     derived=_derived,
     derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_share"),
     blocks=("rms_slope",),

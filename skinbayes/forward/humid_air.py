@@ -26,12 +26,14 @@ from skinbayes.forward.humid_air_inputs import (
     CURVE_INPUTS,
     HUMID_AIR_DEFAULTS,
     HUMID_AIR_INPUTS,
+    bridges_form,
     kelvin_gap_of,
     kelvin_radius_of,
     validate_humid_air,
     with_modulus,
 )
 from skinbayes.forward.humid_air_table import TabulatedPull, prepared_humid_air
+from skinbayes.forward.small_contact import SMALL_CONTACT, small_contact_flags
 from skinbayes.friction import friction_coefficient
 from skinbayes.wetting import MOLECULE_DIAMETER, capillary_state_in_humid_air, is_below_molecule
 
@@ -45,6 +47,7 @@ FLAGS = {
     "('humid-air' or 'humid-air-delta'), so rely neither on the value nor on the humidity at which contact is lost",
     "below_molecule": f"bridges span less than {MOLECULE_DIAMETER * 1e9:g} nm, the size of a water molecule, and are no more "
     "than a figure of speech",
+    **SMALL_CONTACT,
 }
 """Flags and what they say."""
 
@@ -116,10 +119,11 @@ def _flags(
 ) -> dict[str, NDArray[np.bool_]]:
     known = _with_pressing(inputs)
     pull, gap = _pull(known, tables, closure, table), kelvin_gap_of(known)
-    below = (is_below_molecule(gap) > 0) & (gap > 0)
+    below = (is_below_molecule(gap) > 0) & bridges_form(known)
     return {
         "strong_bridges": pull > STRONG_PULL * known["nominal_pressure"],
         "below_molecule": np.broadcast_to(below, pull.shape),
+        **small_contact_flags(inputs, tables),
     }
 
 

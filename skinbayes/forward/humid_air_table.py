@@ -13,7 +13,12 @@ from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Progress, Ranges, Tables
 from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
-from skinbayes.forward.humid_air_inputs import AIR_INPUTS, kelvin_gap_of, pull_strength_of
+from skinbayes.forward.humid_air_inputs import (
+    AIR_INPUTS,
+    at_skin,
+    bridges_form,
+    pull_of,
+)
 from skinbayes.roughness import rms_height
 from skinbayes.wetting import HumidTable, humid_groups, humid_table
 
@@ -39,7 +44,8 @@ class TabulatedPull:
 
     def pull(self, inputs: Inputs, tables: Tables, solved: Callable[[Inputs], FloatArray]) -> FloatArray:
         """Pull [Pa], shape ``(B, N)``, of inputs that broadcast to it; by ``solved`` where the table does not reach."""
-        gap, strength = kelvin_gap_of(inputs), pull_strength_of(inputs)
+        gap, strength = pull_of(inputs)
+        wetted = bridges_form(inputs)
         height = rms_height(spectrum_of(inputs, tables))
         load, skin = inputs["nominal_pressure"], skin_of(inputs)
         same = np.logical_and.reduce([inputs[name] == value for name, value in self.shape.items()])
@@ -49,17 +55,18 @@ class TabulatedPull:
             height,
             load,
             same,
+            wetted,
             skin.young_modulus_layer,
             skin.young_modulus_bulk,
             skin.layer_thickness,
         )
         shape = np.broadcast_shapes(*(np.shape(part) for part in parts))
-        gap, strength, height, load, same, layer, bulk, thickness = (
+        gap, strength, height, load, same, wetted, layer, bulk, thickness = (
             np.broadcast_to(part, shape).reshape(-1) for part in parts
         )
         flat = replace(skin, young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=thickness)
         # neither without bridges nor in a flooded gap does anything pull
-        bridged = (gap > 0) & np.isfinite(gap)
+        bridged = wetted & np.isfinite(gap)
         with np.errstate(all="ignore"):
             groups = humid_groups(load, np.where(bridged, gap, height), height, flat)
         inside = same & self.table.covers(groups, strength)
@@ -97,19 +104,20 @@ def pull_over(
     if any(known[name][1] > value for name, value in shape.items()):
         return None
     low, high = known["relative_humidity"]
-    known["relative_humidity"] = (min(low, _DRIEST), min(max(high, _WET), _WETTEST))
-    inputs = corners(known, (*AIR_INPUTS, *CONTACT_INPUTS))
-    if inputs is None:
+    known["relative_humidity"] = (min(low, _DRIEST), max(high, _WET))
+    found = corners(known, (*AIR_INPUTS, *CONTACT_INPUTS))
+    if found is None:
         return None
-    gap, strength = kelvin_gap_of(inputs), pull_strength_of(inputs)
-    bridged = gap > 0
-    if not bridged.any():
+    inputs = at_skin(found)
+    inputs["relative_humidity"] = np.minimum(inputs["relative_humidity"], _WETTEST)
+    if not bridges_form(inputs).any():
         return None
+    gap, strength = pull_of(inputs)
     spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
     height = np.broadcast_to(rms_height(spectrum), gap.shape)
-    groups = humid_groups(nominal_pressure_of(inputs), np.where(bridged, gap, np.nan), height, skin)
-    low_ends = {name: float(np.nanmin(value)) for name, value in groups.items()}
-    high_ends = {name: float(np.nanmax(value)) for name, value in groups.items()}
+    groups = humid_groups(nominal_pressure_of(inputs), gap, height, skin)
+    low_ends = {name: float(np.min(value)) for name, value in groups.items()}
+    high_ends = {name: float(np.max(value)) for name, value in groups.items()}
     high_ends["load"] = float(np.max(groups["load"] + np.log1p(strength)))
     one = {name: value[0] for name, value in inputs.items()}
     table = humid_table(

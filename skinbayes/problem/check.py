@@ -15,6 +15,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.problem.failures import explained
 from skinbayes.problem.pieces import PIECE, named_in_pieces
+from skinbayes.problem.possible import has_value, predicted_everywhere
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -142,13 +143,17 @@ def _predictions(
     step = max(1, PIECE // problem.conditions.n_rows)
     for start in range(0, len(draws), step):  # nothing is kept but what the sentences need
         predicted = problem.predict(draws[start : start + step])
-        found = np.all([np.isfinite(values).all(axis=-1) for values in predicted.values()], axis=0)
+        names = problem.observables if problem.observations else tuple(predicted)
+        found = np.all([has_value(name, predicted[name]).all(axis=-1) for name in names], axis=0)
         finite[start : start + step] = found
         if problem.observations:
             above = [(predicted[name][found] > 0).all(axis=0) for name in problem.observables]
             positive = np.concatenate(above) & (positive if start else True)
     if not finite.any():
-        raise InputError(f"{problem.spec.path}: none of {len(draws)} prior draws gives a finite prediction")
+        _, missing = predicted_everywhere(problem, draws[:FEWEST_DRAWS])
+        raise InputError(
+            f"{problem.spec.path}: none of {len(draws)} prior draws gives a finite prediction; {missing}"
+        )
     if not problem.free:
         return ("The prediction is finite at all conditions.",), finite, positive
     if finite.all():

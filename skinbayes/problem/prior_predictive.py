@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.errors import InputError
+from skinbayes.problem.possible import predicted_everywhere
 
 if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
@@ -114,7 +115,11 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     finite = np.isfinite(simulated).all(axis=1)
     usable = simulated if finite.all() else simulated[finite]
     if len(usable) == 0:
-        raise InputError(f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}")
+        _, missing = predicted_everywhere(problem, problem.draw_prior(rng, 100))
+        reason = f"; {missing}" if missing else ""
+        raise InputError(
+            f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}{reason}"
+        )
     quantiles, below = np.empty((3, len(observed))), np.empty(len(observed))
     width = max(1, NUMBERS_AT_A_TIME // len(usable))
     for start in range(0, len(observed), width):

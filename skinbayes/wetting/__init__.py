@@ -16,6 +16,7 @@ from skinbayes.wetting.humid_table import HumidTable, humid_groups, humid_table
 from skinbayes.wetting.humidity import (
     MOLECULE_DIAMETER,
     capillary_state_in_humid_air,
+    humidity_at_surface,
     is_below_molecule,
     kelvin_radius,
     young_modulus_at_humidity,
@@ -54,6 +55,7 @@ __all__ = [
     "film_of_droplet",
     "humid_groups",
     "humid_table",
+    "humidity_at_surface",
     "is_below_molecule",
     "kelvin_gap",
     "kelvin_radius",

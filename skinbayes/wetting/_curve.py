@@ -63,7 +63,7 @@ class Curve(NamedTuple):
         return z, list(np.moveaxis(values, -1, 0))
 
     def place(self, film: FloatArray) -> FloatArray:
-        """z at films (m) of shape ``(B, F)``, of that shape."""
+        """z at films (m) of shape ``(B, F)``, of that shape; nan for films beyond the end of a curve."""
         target = np.log(film)
         count = self.nodes.shape[1]
         # the film falls as z grows, apart from folds at nanometres, where the first crossing is taken; start on the chord
@@ -86,7 +86,7 @@ class Curve(NamedTuple):
             active = active & ~last
             if not active.any():
                 break
-        return np.asarray((t + 1) / 2 * self.end[:, None])
+        return np.where(np.isnan(target), np.nan, (t + 1) / 2 * self.end[:, None])
 
 
 def solve_curve(

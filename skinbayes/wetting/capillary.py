@@ -25,6 +25,10 @@ from skinbayes.wetting._types import BoolArray
 
 Branch = Literal["approach", "retreat"]
 
+_ROUNDING = 1e-15  # of a sum of two cosines
+_BEYOND = np.log(4.0)  # of ln film; the pull outgrows a film that is much thinner than the last of a curve
+_NARROW = 1e-13  # m; in gaps up to it, which mean nothing, the area is linear and the film quadratic to 2e-5
+
 
 @dataclass(frozen=True, eq=False)
 class CapillaryState:
@@ -39,7 +43,7 @@ class CapillaryState:
     relative_contact_area : A/A0 at p, elastic, dimensionless
     wet_area : share of the nominal area that is wet, real contact not counted, dimensionless
     mean_separation : ū at p, real contact counted with u = 0, m
-    mean_separation_wet : mean gap of the wet area, m
+    mean_separation_wet : mean gap of the wet area, m; nan where contact is so close that nothing is wet
     flooded : 1 where the film fills the whole gap, else 0, dimensionless
     solutions : number of total pressures that satisfy the equations at this d_K, dimensionless; more than 1 is
         hysteresis; nan where they were not counted
@@ -68,7 +72,7 @@ def kelvin_gap(
 
     Parameters
     ----------
-    kelvin_radius : r_K, m, > 0, any shape; counted positive, where the paper counts it negative
+    kelvin_radius : r_K, m, ≥ 0, any shape; counted positive, where the paper counts it negative
     contact_angle_skin : θ1, rad, 0 … π, broadcasts
     contact_angle_counterface : θ2, rad, 0 … π, broadcasts
 
@@ -91,7 +95,7 @@ def kelvin_gap(
     with np.errstate(all="ignore"):
         wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
         # without bridges an infinite radius, that of saturated air, makes no difference
-        radius = np.where(radius > 0, np.where(wetting == 0, 1.0, radius), np.nan)
+        radius = np.where(radius >= 0, np.where(wetting == 0, 1.0, radius), np.nan)
         return np.asarray(radius * wetting)[()]
 
 
@@ -172,10 +176,16 @@ def capillary_state(
         flooded = possible & (film >= separation[:, None])
         # where there is nothing to solve, half of the flooded film stands in
         inside = np.where(possible & ~flooded, film, separation[:, None] / 2)
-        curve = solve_curve(case.source, case.pressure, case.pull, separation, inside.min(axis=1))
+        thinnest = inside.min(axis=1, initial=np.inf)
+        curve = solve_curve(case.source, case.pressure, case.pull, separation, thinnest)
         z, found = curve.at(inside)
         x, reference = found[0], curve.reference[:, None]
         if refine:
+            # films a little beyond the end of the curve are sought from there
+            last = np.broadcast_to(curve.end[:, None], z.shape)
+            ends = curve.along(last)
+            beyond = np.isnan(z) & (ends[0] - np.log(inside) < _BEYOND)
+            x, z = np.where(beyond, ends[1], x), np.where(beyond, last, z)
             x, z = refine_films(case.source, case.pressure, case.pull, inside, x, z, curve.reference)
             gap = reference / np.expm1(z)
             solutions = roots_at_gaps(case.source, case.pressure, case.pull, gap, False)[1]
@@ -206,7 +216,8 @@ def capillary_state_at_gap(
 
     Parameters
     ----------
-    kelvin_gap : d_K, m, > 0, shape ``(F,)`` or ``(..., F)``, or a scalar; inf is flooded
+    kelvin_gap : d_K, m, ≥ 0, shape ``(F,)`` or ``(..., F)``, or a scalar; inf is flooded, 0 the limit of narrow gaps, in which
+        the pull is ``γ_w (cos θ1 + cos θ2) P(u → 0; p)``
     nominal_pressure : p0, Pa, > 0, batch shape
     spectrum : power spectrum, C in m^4, scalar or batched
     skin : moduli in Pa, thickness in m; broadcasts with the spectrum
@@ -250,12 +261,14 @@ def capillary_state_at_gap(
     case = _flatten(kelvin_gap, nominal_pressure, spectrum, skin, surface_tension, contact_angle_skin,
                     contact_angle_counterface, area_correction, closure)  # fmt: skip
     with np.errstate(all="ignore"):
-        possible = (case.wanted > 0) & np.isfinite(case.separation * case.pull)[:, None]
+        possible = (case.wanted >= 0) & np.isfinite(case.separation * case.pull)[:, None]
         flooded = possible & (case.wanted == np.inf)
-        gap = np.where(possible & ~flooded, case.wanted, case.separation[:, None])
+        wanted = np.where(possible & ~flooded, case.wanted, case.separation[:, None])
+        gap = np.maximum(wanted, _NARROW)
         x, solutions = roots_at_gaps(case.source, case.pressure, case.pull, gap, branch == "retreat", count)
         filled, mean = filled_at(case.source, x, gap)
-        return _finish(case, _Solved(gap, filled.area, mean, filled.film, solutions), flooded, possible)
+        solved = _Solved(gap, filled.area, mean, filled.film, solutions)
+        return _finish(case, solved, flooded, possible, wanted / gap)
 
 
 class _Case(NamedTuple):
@@ -283,7 +296,8 @@ def cosine_sum(contact_angle_skin: ArrayLike, contact_angle_counterface: ArrayLi
     """cos θ1 + cos θ2; nan for impossible angles."""
     angles = (np.asarray(x, dtype=np.float64) for x in (contact_angle_skin, contact_angle_counterface))
     first, second = (np.cos(np.where((x >= 0) & (x <= np.pi), x, np.nan)) for x in angles)
-    return np.asarray(first + second)
+    # two right angles, or 80 and 100 degrees, sum to 0 but for rounding
+    return np.where(np.abs(first + second) < _ROUNDING, 0.0, first + second)
 
 
 def _flatten(
@@ -304,7 +318,7 @@ def _flatten(
     )
     with np.errstate(all="ignore"):
         wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
-        pull = np.where(tension >= 0, tension, np.nan) * wetting
+        pull = np.where((tension >= 0) & (tension < np.inf), tension, np.nan) * wetting
         pressure = np.where(pressure > 0, pressure, np.nan)
     shapes = [*batch_shapes(spectrum, skin), pressure.shape, pull.shape, gamma.shape, films.shape[:-1]]
     batch = np.broadcast_shapes(*shapes)
@@ -320,33 +334,40 @@ def _flatten(
         :, 0
     ]
     columns = films.shape[-1] if films.ndim else 1
-    rows = np.broadcast_to(films, (*batch, columns)).reshape(-1, columns)
+    rows = np.broadcast_to(films, (*batch, columns)).reshape(len(pressure), columns)
     return _Case(source, pressure, flat(pull), separation, rows, (*batch, columns) if films.ndim else batch)
 
 
-def _finish(case: _Case, solved: _Solved, flooded: BoolArray, possible: BoolArray) -> CapillaryState:
-    """The state: what was solved, the dry load where the gap is flooded, nan where an argument is impossible."""
+def _finish(
+    case: _Case, solved: _Solved, flooded: BoolArray, possible: BoolArray, narrower: FloatArray | float = 1.0
+) -> CapillaryState:
+    """The state: what was solved, the dry load where the gap is flooded, nan where an argument is impossible.
+
+    Gaps are ``narrower`` by that factor than those that were solved.
+    """
+
+    attraction = np.where(flooded, 0.0, case.pull[:, None] / solved.gap * solved.wet)
+    known = possible & np.isfinite(attraction)
 
     def choose(bridged: FloatArray, full: FloatArray) -> FloatArray:
-        value = np.where(flooded, full, np.where(possible, bridged, np.nan))
+        value = np.where(flooded, full, np.where(known, bridged, np.nan))
         return np.asarray(value.reshape(case.shape))[()]
 
     load, separation = case.pressure[:, None], case.separation[:, None]
     variance = np.asarray(stress_variance(case.source.spectrum, case.source.skin))
     gamma = np.asarray(case.source.area_correction)
     variance, gamma = (x[:, None] if x.ndim else x for x in (variance, gamma))
-    attraction = np.where(flooded, 0.0, case.pull[:, None] / solved.gap * solved.wet)
     pressure = load + attraction
     area = relative_contact_area(pressure, variance, gamma)
     return CapillaryState(
-        film_thickness=choose(solved.film, separation),
-        kelvin_gap=choose(solved.gap, np.full_like(load, np.inf)),
+        film_thickness=choose(solved.film * np.square(narrower), separation),
+        kelvin_gap=choose(solved.gap * narrower, np.full_like(load, np.inf)),
         capillary_pressure=choose(attraction, attraction),
         total_pressure=choose(pressure, pressure),
         relative_contact_area=choose(area, area),
-        wet_area=choose(solved.wet, 1 - area),
+        wet_area=choose(solved.wet * narrower, 1 - area),
         mean_separation=choose(solved.mean, separation),
-        mean_separation_wet=choose(solved.film / solved.wet, separation / (1 - area)),
+        mean_separation_wet=choose(solved.film / solved.wet * narrower, separation / (1 - area)),
         flooded=choose(0.0 * solved.gap, 1 + 0.0 * load),
         solutions=choose(solved.solutions, 1 + 0.0 * load),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields
 
 import numpy as np
 
@@ -11,12 +11,15 @@ from skinbayes.contact import AREA_CORRECTION, LayeredSkin
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._gaps import Closure
 from skinbayes.wetting.capillary import Branch, CapillaryState, capillary_state_at_gap, kelvin_gap
-from skinbayes.wetting.water import BOLTZMANN_CONSTANT, molecular_volume_of_water, surface_tension_of_water
+from skinbayes.wetting.water import (
+    BOLTZMANN_CONSTANT,
+    molecular_volume_of_water,
+    saturation_vapour_pressure,
+    surface_tension_of_water,
+)
 
 MOLECULE_DIAMETER = 0.3e-9
 """Size of a water molecule, m, about the cube root of its volume in the liquid; a Kelvin length below it means nothing."""
-
-_NO_GAP = 1e-15  # m, stands for a Kelvin length of 0
 
 
 def kelvin_radius(relative_humidity: ArrayLike, temperature: ArrayLike) -> FloatArray:
@@ -24,7 +27,7 @@ def kelvin_radius(relative_humidity: ArrayLike, temperature: ArrayLike) -> Float
 
     Parameters
     ----------
-    relative_humidity : RH, dimensionless, 0 < RH ≤ 1, any shape; 1 gives inf
+    relative_humidity : RH, dimensionless, 0 … 1, any shape; 0 gives 0 and 1 inf
     temperature : T, K, broadcasts; surface tension and molecular volume v are those of water at T
 
     Returns
@@ -47,9 +50,50 @@ def kelvin_radius(relative_humidity: ArrayLike, temperature: ArrayLike) -> Float
     """
     humidity, kelvin = (np.asarray(x, dtype=np.float64) for x in (relative_humidity, temperature))
     with np.errstate(all="ignore"):
-        humidity = np.where((humidity > 0) & (humidity <= 1), humidity, np.nan)
+        humidity = np.where((humidity >= 0) & (humidity <= 1), humidity, np.nan)
         work = BOLTZMANN_CONSTANT * kelvin * np.abs(np.log(humidity))
         return np.asarray(surface_tension_of_water(kelvin) * molecular_volume_of_water(kelvin) / work)[()]
+
+
+def humidity_at_surface(
+    relative_humidity: ArrayLike, air_temperature: ArrayLike, surface_temperature: ArrayLike
+) -> FloatArray:
+    """Relative humidity at a surface that is warmer or colder than the air (for Appendix A of the paper).
+
+    The vapour pressure p_a of Eq. 8 is the same in the room and at the skin, that of saturation is not:
+    ``RH_s = RH p_w(T_air)/p_w(T_surface)``.
+
+    Parameters
+    ----------
+    relative_humidity : RH of the air, dimensionless, 0 … 1, any shape
+    air_temperature : T_air, K, broadcasts
+    surface_temperature : T_surface, K, broadcasts
+
+    Returns
+    -------
+    relative_humidity : RH_s, dimensionless, 0 … 1, broadcast shape; 1 where a cold surface makes water condense; nan where an
+        argument is impossible
+
+    Notes
+    -----
+    Air of 50 % in a room of 20 °C is air of 25 % to skin of 32 °C. Covered skin and skin under a probe are moister: they
+    lose water themselves.
+
+    References
+    ----------
+    Wagner & Pruß, J. Phys. Chem. Ref. Data 22 (1993) 783, doi 10.1063/1.555926 (saturation pressure).
+
+    Examples
+    --------
+    >>> print(f"{humidity_at_surface(0.5, 293.15, 305.15):.4f} {humidity_at_surface(0.9, 293.15, 288.15):.0f}")
+    0.2457 1
+    """
+    humidity = np.asarray(relative_humidity, dtype=np.float64)
+    air, surface = (saturation_vapour_pressure(x) for x in (air_temperature, surface_temperature))
+    with np.errstate(all="ignore"):
+        humidity = np.where((humidity >= 0) & (humidity <= 1), humidity, np.nan)
+        # equal temperatures leave the humidity as it is, to the last bit
+        return np.minimum(humidity * (air / surface), 1.0)[()]
 
 
 def is_below_molecule(kelvin_gap: ArrayLike) -> FloatArray:
@@ -58,11 +102,11 @@ def is_below_molecule(kelvin_gap: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    kelvin_gap : d_K, m, any shape
+    kelvin_gap : d_K, m, ≥ 0, any shape
 
     Returns
     -------
-    below : 1 where d_K < `MOLECULE_DIAMETER`, else 0, dimensionless, shape of ``kelvin_gap``; nan for nan
+    below : 1 where d_K < `MOLECULE_DIAMETER`, else 0, dimensionless, shape of ``kelvin_gap``; nan for nan or a negative d_K
 
     References
     ----------
@@ -76,7 +120,7 @@ def is_below_molecule(kelvin_gap: ArrayLike) -> FloatArray:
     [1. 0. 0.]
     """
     gap = np.asarray(kelvin_gap, dtype=np.float64)
-    return np.where(np.isnan(gap), np.nan, gap < MOLECULE_DIAMETER)[()]
+    return np.where(gap >= 0, gap < MOLECULE_DIAMETER, np.nan)[()]
 
 
 def capillary_state_in_humid_air(
@@ -96,7 +140,8 @@ def capillary_state_in_humid_air(
 
     Parameters
     ----------
-    relative_humidity : RH, dimensionless, 0 < RH ≤ 1, shape ``(F,)`` or ``(..., F)``, or a scalar; 1 floods the gap
+    relative_humidity : RH, dimensionless, 0 … 1, shape ``(F,)`` or ``(..., F)``, or a scalar; 1 floods the gap, 0 is the limit
+        of ever drier air
     temperature : T, K, one for each member of the batch
     nominal_pressure : p0, Pa, > 0, batch shape
     spectrum : power spectrum, C in m^4, scalar or batched
@@ -111,13 +156,15 @@ def capillary_state_in_humid_air(
     Returns
     -------
     state : `CapillaryState`, batch shape, plus the axis of ``relative_humidity`` if it has one; nan where a parameter is
-        impossible. ``kelvin_gap`` is 0 where no bridges form.
+        impossible. ``kelvin_gap`` is 0 where no bridges form, and in perfectly dry air.
 
     Notes
     -----
     With E0 = 70 MPa the area hardly changes with humidity, with E0 = 7 MPa the bridges pull skin into nearly complete contact in
     dry air. Where, between 60 and 95 %, the soft curve comes down depends on the closure and is no result of the theory. Below
-    about 12 % d_K is smaller than a molecule, see `is_below_molecule`.
+    about 12 % d_K is smaller than a molecule, see `is_below_molecule`. At both ends the pull is continuous: towards saturation
+    d_K grows beyond all gaps and p_K falls to 0, towards dry air p_K grows as the area that d_K reaches shrinks, and the pull
+    comes to γ_w (cos θ1 + cos θ2) P(u → 0).
 
     References
     ----------
@@ -138,17 +185,19 @@ def capillary_state_in_humid_air(
     humidity, kelvin = (np.asarray(x, dtype=np.float64) for x in (relative_humidity, temperature))
     with np.errstate(all="ignore"):
         each, first, second = (
-            np.asarray(x, dtype=np.float64)[(..., None) if humidity.ndim else ...]
+            np.asarray(x, dtype=np.float64)[..., None]
             for x in (kelvin, contact_angle_skin, contact_angle_counterface)
         )
         gap = kelvin_gap(kelvin_radius(humidity, each), first, second)
-        bridged = np.where(gap == 0, _NO_GAP, gap)
-        state = capillary_state_at_gap(
-            bridged, nominal_pressure, spectrum, skin, surface_tension_of_water(kelvin), contact_angle_skin,
-            contact_angle_counterface, area_correction, closure, branch, count,
-        )  # fmt: skip
-    shown = np.where(state.kelvin_gap == _NO_GAP, 0.0, state.kelvin_gap)[()]
-    return replace(state, kelvin_gap=shown)
+        tension = surface_tension_of_water(kelvin)
+    state = capillary_state_at_gap(
+        gap, nominal_pressure, spectrum, skin, tension, contact_angle_skin, contact_angle_counterface, area_correction,
+        closure, branch, count,
+    )  # fmt: skip
+    # one humidity has no axis of its own
+    return (
+        state if humidity.ndim else CapillaryState(*(getattr(state, x.name)[..., 0] for x in fields(state)))
+    )
 
 
 def young_modulus_at_humidity(
