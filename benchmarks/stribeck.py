@@ -147,7 +147,14 @@ def plain_curve(products: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarra
 def fast_curve(products: np.ndarray, nodes: int) -> np.ndarray:
     """The same with skinbayes."""
     radius, load, modulus, skin, surface = case()
-    films = lubricated_films(products, radius, load, modulus, asperity_law(surface, skin), nodes=nodes)
+    films = lubricated_films(
+        products,
+        cylinder_radius=radius,
+        load_per_length=load,
+        reduced_modulus=modulus,
+        asperities=asperity_law(surface, skin),
+        nodes=nodes,
+    )
     return BOUNDARY_FRICTION * films.asperity_load_share + films.couette + films.pressure_flow
 
 
@@ -213,8 +220,14 @@ def direct_friction(parameters: dict[str, float], products: np.ndarray, nodes: i
         parameters["layer_thickness"],
     )
     curve = stribeck_curve(
-        products, parameters["sphere_radius"], parameters["normal_force"], skin, surface, SHEAR_STRESS, nodes=nodes
-    )  # fmt: skip
+        products,
+        sphere_radius=parameters["sphere_radius"],
+        normal_force=parameters["normal_force"],
+        skin=skin,
+        spectrum=surface,
+        frictional_shear_stress=SHEAR_STRESS,
+        nodes=nodes,
+    )
     return curve.friction_coefficient
 
 

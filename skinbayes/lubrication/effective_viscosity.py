@@ -43,8 +43,9 @@ class EffectiveViscosity(NamedTuple):
 def stribeck_curve_of_liquid(
     sliding_speed: ArrayLike,
     flow_curve: FlowCurve,
-    sphere_radius: float,
+    *,
     normal_force: float,
+    sphere_radius: float,
     skin: LayeredSkin,
     spectrum: PowerSpectrum,
     frictional_shear_stress: float,
@@ -64,8 +65,8 @@ def stribeck_curve_of_liquid(
     ----------
     sliding_speed : v, m/s, > 0, shape ``(K,)``
     flow_curve : η against shear rate; outside the measured rates the viscosity at the nearer end is used
-    sphere_radius : R, m, > 0
     normal_force : F_N, N, > 0
+    sphere_radius : R, m, > 0
     skin : moduli in Pa, thickness in m, one skin
     spectrum : power spectrum, C in m^4, one surface
     frictional_shear_stress : σ_f, Pa, ≥ 0
@@ -99,7 +100,8 @@ def stribeck_curve_of_liquid(
     >>> from skinbayes.roughness import named_surface
     >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
     >>> honey = FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])
-    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, 8e-3, 0.2, wet, surface, 15e6)
+    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, sphere_radius=8e-3, normal_force=0.2,
+    ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3), viscosity.viscosity.round(1))
     [0.108 0.325] [25.  24.6]
     """
@@ -118,16 +120,32 @@ def stribeck_curve_of_liquid(
         """ln v/u."""
         products = np.exp(log_viscosity) * speed * velocity_shift_factor
         films = lubricated_films(
-            products, float(cylinder.cylinder_radius), float(cylinder.load_per_length), modulus, law, flow_factors, nodes=nodes
-        )  # fmt: skip
+            products,
+            cylinder_radius=float(cylinder.cylinder_radius),
+            load_per_length=float(cylinder.load_per_length),
+            reduced_modulus=modulus,
+            asperities=law,
+            flow_factors=flow_factors,
+            nodes=nodes,
+        )
         return np.asarray(np.log(speed / films.central_film))
 
     log_viscosity = _fixed_point(shear_rate, liquids)
     rate = np.exp(shear_rate(log_viscosity))
     curve = stribeck_curve(
-        np.exp(log_viscosity) * speed, sphere_radius, normal_force, skin, spectrum, frictional_shear_stress, area_correction,
-        velocity_shift_factor, flow_factors, nodes=nodes, thickest_film=thickest_film, largest_strain=largest_strain,
-    )  # fmt: skip
+        np.exp(log_viscosity) * speed,
+        sphere_radius=sphere_radius,
+        normal_force=normal_force,
+        skin=skin,
+        spectrum=spectrum,
+        frictional_shear_stress=frictional_shear_stress,
+        area_correction=area_correction,
+        velocity_shift_factor=velocity_shift_factor,
+        flow_factors=flow_factors,
+        nodes=nodes,
+        thickest_film=thickest_film,
+        largest_strain=largest_strain,
+    )
     good = np.isfinite(curve.friction_coefficient)
     unmeasured = good & ~liquids.measured(rate)
     viscosity = np.where(good, np.exp(log_viscosity), np.nan)

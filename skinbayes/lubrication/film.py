@@ -65,8 +65,9 @@ class LubricatedFilms(NamedTuple):
 
 def lubricated_films(
     speed_viscosity_product: ArrayLike,
-    cylinder_radius: float,
+    *,
     load_per_length: float,
+    cylinder_radius: float,
     reduced_modulus: float,
     asperities: AsperityLaw | None = None,
     flow_factors: FlowFactors | None = None,
@@ -82,8 +83,8 @@ def lubricated_films(
     Parameters
     ----------
     speed_viscosity_product : η v, N/m, > 0, shape ``(K,)``; with a rheology η0 v
-    cylinder_radius : Rc, m
     load_per_length : f_N, N/m
+    cylinder_radius : Rc, m
     reduced_modulus : E* of the solid on the scale of the contact, Pa
     asperities : p_a against ū, from `asperity_law`; None for smooth surfaces
     flow_factors : None for trivial ones
@@ -110,7 +111,7 @@ def lubricated_films(
 
     Examples
     --------
-    >>> films = lubricated_films([0.1], 4.533e-3, 21.92, 20e3 / 0.75)
+    >>> films = lubricated_films([0.1], cylinder_radius=4.533e-3, load_per_length=21.92, reduced_modulus=20e3 / 0.75)
     >>> print(f"{films.central_film[0]:.2e} m, {films.couette[0]:.3f}")
     1.94e-04 m, 0.138
     """

@@ -96,7 +96,9 @@ def _outputs(log_number: FloatArray) -> FloatArray:
     modulus = 4 / np.pi
     hertz = line_contact(1.0, 1.0, modulus)
     products = np.exp(log_number) / lubrication_number_per_product(1.0, hertz)
-    films = lubricated_films(products, 1.0, 1.0, modulus, nodes=_NODES)
+    films = lubricated_films(
+        products, cylinder_radius=1.0, load_per_length=1.0, reduced_modulus=modulus, nodes=_NODES
+    )
     height, slope = float(hertz.half_width**2), float(hertz.half_width)
     return np.log(
         np.array(

@@ -136,8 +136,13 @@ class Ball:
         products = number / lubrication_number_per_product(self.cylinder_radius, hertz)
         for more in _MORE_NODES:
             films = lubricated_films(
-                products, self.cylinder_radius, self.load_per_length, self.reduced_modulus, self.law, nodes=nodes + more
-            )  # fmt: skip
+                products,
+                cylinder_radius=self.cylinder_radius,
+                load_per_length=self.load_per_length,
+                reduced_modulus=self.reduced_modulus,
+                asperities=self.law,
+                nodes=nodes + more,
+            )
             area = relative_contact_area(films.asperity_pressure, self.variance, self.surface.area_correction)
             # 1 − (1 − share) has no digits where the share is small
             carried = films.asperity_pressure @ films.load_weight / self.load_per_length

@@ -106,8 +106,9 @@ class StribeckCurve:
 
 def stribeck_curve(
     speed_viscosity_product: ArrayLike,
-    sphere_radius: ArrayLike,
+    *,
     normal_force: ArrayLike,
+    sphere_radius: ArrayLike,
     skin: LayeredSkin,
     spectrum: PowerSpectrum,
     frictional_shear_stress: ArrayLike,
@@ -128,8 +129,8 @@ def stribeck_curve(
     Parameters
     ----------
     speed_viscosity_product : ηv, N/m, > 0, shape ``(K,)``, or a scalar; with a rheology η0 v
-    sphere_radius : R, m, > 0, batch shape
     normal_force : F_N, N, > 0, batch shape
+    sphere_radius : R, m, > 0, batch shape
     skin : moduli in Pa, thickness in m, batch shape
     spectrum : power spectrum, C in m^4, batch shape
     frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
@@ -159,7 +160,8 @@ def stribeck_curve(
     --------
     >>> from skinbayes.roughness import named_surface
     >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], 8e-3, 0.2, wet, surface, 15e6)
+    >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], sphere_radius=8e-3, normal_force=0.2,
+    ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3))
     [1.423 0.915 0.109   nan]
     >>> print(*curve.reasons(), sep="\\n")
@@ -257,9 +259,15 @@ def _one_curve(
     result |= {name: np.full(products.shape, np.nan) for name in names}
     if solved.any():
         films = lubricated_films(
-            shifted[solved], float(cylinder.cylinder_radius), load, case.modulus, law_of_table(*table),
-            flow_factors, rheology, nodes,
-        )  # fmt: skip
+            shifted[solved],
+            cylinder_radius=float(cylinder.cylinder_radius),
+            load_per_length=load,
+            reduced_modulus=case.modulus,
+            asperities=law_of_table(*table),
+            flow_factors=flow_factors,
+            rheology=rheology,
+            nodes=nodes,
+        )
         area = relative_contact_area(films.asperity_pressure, case.variance, case.area_correction)
         boundary = case.shear_stress * (area @ films.load_weight) / load
         for name in names:

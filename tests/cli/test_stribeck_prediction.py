@@ -64,7 +64,14 @@ def test_other_parameters_against_the_physics(capsys):
     ).document()["prediction"]
     skin = LayeredSkin(3e6, 60e3, 0.5, 0.5, 50e-6)
     surface = SelfAffineSpectrum(12e-6, 0.78, 1e3, 6.345e3, 1e9)
-    direct = stribeck_curve(3 * 2e-3, 12e-3, 1.0, skin, surface, 4e6)
+    direct = stribeck_curve(
+        3 * 2e-3,
+        sphere_radius=12e-3,
+        normal_force=1.0,
+        skin=skin,
+        spectrum=surface,
+        frictional_shear_stress=4e6,
+    )
     assert_allclose(found["friction_coefficient"], direct.friction_coefficient, rtol=1e-6)
     assert_allclose(found["central_film_thickness"], direct.central_film, rtol=1e-6)
 

@@ -156,15 +156,26 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
     speeds = np.geomspace(3e-3, 0.2, 6)
     for name in ("honey + 3 g starch", "hand cream + 3 g glycerin", "water"):
         curve, viscosity = stribeck_curve_of_liquid(
-            speeds, CURVES[name], parameters["sphere_radius"], parameters["normal_force"], skin_of(parameters),
-            spectrum_of(parameters), STRESS, nodes=120,
-        )  # fmt: skip
+            speeds,
+            CURVES[name],
+            sphere_radius=parameters["sphere_radius"],
+            normal_force=parameters["normal_force"],
+            skin=skin_of(parameters),
+            spectrum=spectrum_of(parameters),
+            frictional_shear_stress=STRESS,
+            nodes=120,
+        )
         modulus = float(reduced_modulus(parameters["young_modulus_bulk"], 0.5))
         radius, load = cylinder_of_sphere(parameters["normal_force"], parameters["sphere_radius"], modulus)
         law = asperity_law(spectrum_of(parameters), skin_of(parameters))
         good = np.isfinite(viscosity.viscosity)
         films = lubricated_films(
-            (viscosity.viscosity * speeds)[good], float(radius), float(load), modulus, law, nodes=120
+            (viscosity.viscosity * speeds)[good],
+            cylinder_radius=float(radius),
+            load_per_length=float(load),
+            reduced_modulus=modulus,
+            asperities=law,
+            nodes=120,
         )
         low, high = CURVES[name].shear_rate_range
         expected = CURVES[name].viscosity(np.clip(speeds[good] / films.central_film, low, high))
@@ -176,5 +187,5 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
         np.testing.assert_allclose(tabulated.viscosity, viscosity.viscosity, rtol=7e-3)
         assert np.array_equal(tabulated.unmeasured, viscosity.unmeasured)
     with pytest.raises(InputError, match="sliding_speed 2 is -1 m/s"):
-        stribeck_curve_of_liquid([0.1, -1.0], CURVES["honey"], 8e-3, 0.2, skin_of(parameters),
-                                 spectrum_of(parameters), STRESS)  # fmt: skip
+        stribeck_curve_of_liquid([0.1, -1.0], CURVES["honey"], sphere_radius=8e-3, normal_force=0.2, skin=skin_of(parameters),
+                                 spectrum=spectrum_of(parameters), frictional_shear_stress=STRESS)  # fmt: skip

@@ -32,8 +32,15 @@ FIELDS = (
 def direct(parameters, products, nodes=160, **options):
     one = {name: float(value) for name, value in parameters.items()}
     return stribeck_curve(
-        products, one["sphere_radius"], one["normal_force"], skin_of(one), spectrum_of(one), SHEAR_STRESS, nodes=nodes, **options
-    )  # fmt: skip
+        products,
+        sphere_radius=one["sphere_radius"],
+        normal_force=one["normal_force"],
+        skin=skin_of(one),
+        spectrum=spectrum_of(one),
+        frictional_shear_stress=SHEAR_STRESS,
+        nodes=nodes,
+        **options,
+    )
 
 
 def vector(parameters, place):
@@ -224,7 +231,11 @@ def test_smooth_films_between_and_below_their_points():
     hertz = line_contact(1.0, 1.0, modulus)
     for place, number in enumerate(np.exp(log_number)):
         films = lubricated_films(
-            number / lubrication_number_per_product(1.0, hertz), 1.0, 1.0, modulus, nodes=320
+            number / lubrication_number_per_product(1.0, hertz),
+            cylinder_radius=1.0,
+            load_per_length=1.0,
+            reduced_modulus=modulus,
+            nodes=320,
         )
         # b/Rc = 1 here: λ/(3π)∫θ dX/H, ∫H dP_f/π and films in their own unit
         assert np.exp(found[0][place]) == pytest.approx(films.central_film[0], rel=2e-3)

@@ -30,7 +30,15 @@ def solve(parameters, product, stress, nodes):
         height, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max
     )
     skin = LayeredSkin(layer, bulk, 0.5, 0.5, thickness)
-    return stribeck_curve(product, radius, force, skin, surface, stress, nodes=nodes).friction_coefficient[0]
+    return stribeck_curve(
+        product,
+        sphere_radius=radius,
+        normal_force=force,
+        skin=skin,
+        spectrum=surface,
+        frictional_shear_stress=stress,
+        nodes=nodes,
+    ).friction_coefficient[0]
 
 
 @pytest.mark.slow
@@ -85,7 +93,16 @@ def test_layer_thickness_and_poisson_ratios():
         named = {name: low for name, (low, _) in ranges.items()}
         named |= {"young_modulus_bulk": bulk, "layer_thickness": thickness}
         skin = LayeredSkin(7e6, bulk, 0.4, 0.45, thickness)
-        wanted = stribeck_curve(products, 8e-3, 0.3, skin, surface, 1e7, 1.0, nodes=160).friction_coefficient
+        wanted = stribeck_curve(
+            products,
+            sphere_radius=8e-3,
+            normal_force=0.3,
+            skin=skin,
+            spectrum=surface,
+            frictional_shear_stress=1e7,
+            area_correction=1.0,
+            nodes=160,
+        ).friction_coefficient
         found = tabulated_friction(table, products, named, 1e7).friction_coefficient
         np.testing.assert_allclose(found, wanted, rtol=7.5e-3)
 

@@ -48,7 +48,9 @@ def test_thick_films_are_those_of_a_rigid_cylinder():
     film, shear, pressure = rigid_cylinder()
     assert film == pytest.approx(2.447, abs=1e-3)  # the number in textbooks, after Martin
     product = np.array([1e3, 1e4]) / PER_PRODUCT
-    films = lubricated_films(product, RADIUS, LOAD, MODULUS, nodes=200)
+    films = lubricated_films(
+        product, cylinder_radius=RADIUS, load_per_length=LOAD, reduced_modulus=MODULUS, nodes=200
+    )
     root = np.sqrt(product / LOAD)
     np.testing.assert_allclose(films.minimum_film, film * product * RADIUS / LOAD, rtol=2e-3)
     np.testing.assert_allclose(films.couette, shear * root, rtol=2e-3)
@@ -60,7 +62,9 @@ def test_smooth_soft_contact_has_the_exponent_of_soft_lubrication():
     # for the minimum and the central film, are 3 to 5 % higher
     number = np.array([1e-5, 2e-5, 1e-4])
     product = number / PER_PRODUCT
-    films = lubricated_films(product, RADIUS, LOAD, MODULUS, nodes=300)
+    films = lubricated_films(
+        product, cylinder_radius=RADIUS, load_per_length=LOAD, reduced_modulus=MODULUS, nodes=300
+    )
     step = np.diff(np.log(number))
     assert np.diff(np.log(films.central_film)) / step == pytest.approx([0.6, 0.6], abs=3e-3)
     assert np.diff(np.log(films.minimum_film)) / step == pytest.approx([0.6, 0.6], abs=4e-3)
@@ -72,7 +76,14 @@ def test_smooth_soft_contact_has_the_exponent_of_soft_lubrication():
 
 def test_slow_sliding_is_the_dry_contact():
     # without fluid all pressure is that of asperities and the gap is their separation
-    films = lubricated_films([1e-12, 1e-9], RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET), nodes=200)
+    films = lubricated_films(
+        [1e-12, 1e-9],
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+        nodes=200,
+    )
     assert films.asperity_load_share == pytest.approx([1, 1], abs=1e-5)
     assert films.asperity_pressure[0] @ films.load_weight == pytest.approx(LOAD, rel=1e-6)
     loaded = films.asperity_pressure[0] > 1.0
@@ -105,8 +116,17 @@ def test_asperity_law_is_the_inverse_of_the_mean_separation():
 
 def test_fast_sliding_forgets_the_roughness():
     product = np.array([0.2, 0.5])
-    rough = lubricated_films(product, RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET), nodes=200)
-    smooth = lubricated_films(product, RADIUS, LOAD, MODULUS, nodes=200)
+    rough = lubricated_films(
+        product,
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+        nodes=200,
+    )
+    smooth = lubricated_films(
+        product, cylinder_radius=RADIUS, load_per_length=LOAD, reduced_modulus=MODULUS, nodes=200
+    )
     assert rough.asperity_load_share.max() < 1e-6
     np.testing.assert_allclose(rough.couette, smooth.couette, rtol=1e-3)
     np.testing.assert_allclose(rough.minimum_film, smooth.minimum_film, rtol=2e-3)
@@ -114,7 +134,14 @@ def test_fast_sliding_forgets_the_roughness():
 
 def test_load_and_balance_of_forces():
     product = np.geomspace(1e-4, 0.5, 9)
-    films = lubricated_films(product, RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET), nodes=300)
+    films = lubricated_films(
+        product,
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+        nodes=300,
+    )
     total = films.fluid_pressure + films.asperity_pressure
     # before the grid the fluid pressure is 4λ/(3|X|³)
     start = films.position[0] / HERTZ.half_width
@@ -128,7 +155,13 @@ def test_load_and_balance_of_forces():
 
 def test_film_is_thinnest_and_asperities_are_strongest_at_the_exit():
     # what the paper says of its Fig. 15
-    films = lubricated_films([3e-3, 1e-2, 0.1], RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET))
+    films = lubricated_films(
+        [3e-3, 1e-2, 0.1],
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+    )
     thinnest = films.position[np.argmin(films.separation, axis=1)]
     strongest = films.position[np.argmax(films.asperity_pressure, axis=1)]
     assert np.all(thinnest > 0.3 * HERTZ.half_width)
@@ -137,7 +170,13 @@ def test_film_is_thinnest_and_asperities_are_strongest_at_the_exit():
 
 
 def test_parts_are_monotone_in_speed():
-    films = lubricated_films(np.geomspace(1e-7, 0.5, 40), RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET))
+    films = lubricated_films(
+        np.geomspace(1e-7, 0.5, 40),
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+    )
     assert np.all(np.diff(films.asperity_load_share) < 0)
     for name in ("minimum_film", "central_film", "couette", "pressure_flow"):
         assert np.all(np.diff(getattr(films, name)) > 0), name
@@ -147,7 +186,17 @@ def test_parts_are_monotone_in_speed():
 def test_few_nodes_are_enough(nodes):
     product = np.geomspace(1e-6, 0.5, 16)
     law = asperity_law(SURFACE, WET)
-    films, exact = (lubricated_films(product, RADIUS, LOAD, MODULUS, law, nodes=n) for n in (nodes, 500))
+    films, exact = (
+        lubricated_films(
+            product,
+            cylinder_radius=RADIUS,
+            load_per_length=LOAD,
+            reduced_modulus=MODULUS,
+            asperities=law,
+            nodes=n,
+        )
+        for n in (nodes, 500)
+    )
     friction, wanted = (1.447 * f.asperity_load_share + f.couette + f.pressure_flow for f in (films, exact))
     assert np.abs(friction / wanted - 1).max() < 0.006 * (64 / nodes) ** 2
     assert np.abs(films.minimum_film / exact.minimum_film - 1).max() < 0.01 * (64 / nodes) ** 2
@@ -155,15 +204,36 @@ def test_few_nodes_are_enough(nodes):
 
 def test_answers_do_not_depend_on_the_other_speeds():
     law = asperity_law(SURFACE, WET)
-    together = lubricated_films([3e-4, 0.02, 0.3], RADIUS, LOAD, MODULUS, law, nodes=150)
+    together = lubricated_films(
+        [3e-4, 0.02, 0.3],
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=law,
+        nodes=150,
+    )
     for i, product in enumerate((3e-4, 0.02, 0.3)):
-        alone = lubricated_films([product], RADIUS, LOAD, MODULUS, law, nodes=150)
+        alone = lubricated_films(
+            [product],
+            cylinder_radius=RADIUS,
+            load_per_length=LOAD,
+            reduced_modulus=MODULUS,
+            asperities=law,
+            nodes=150,
+        )
         assert alone.couette[0] == pytest.approx(together.couette[i], rel=3e-3)
         assert alone.asperity_load_share[0] == pytest.approx(
             together.asperity_load_share[i], rel=1e-2, abs=1e-8
         )
     # in any order
-    back = lubricated_films([0.3, 3e-4, 0.02], RADIUS, LOAD, MODULUS, law, nodes=150)
+    back = lubricated_films(
+        [0.3, 3e-4, 0.02],
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=law,
+        nodes=150,
+    )
     np.testing.assert_allclose(back.couette, together.couette[[2, 0, 1]], rtol=1e-9)
 
 
@@ -173,8 +243,16 @@ def test_dimensionless_groups():
     law = law_of_table(u, np.log(2e6) - u / 14e-6)
     larger = law_of_table(3 * u, np.log(7 * 2e6) - u / 14e-6)
     product = np.geomspace(1e-4, 0.1, 5)
-    first = lubricated_films(product, RADIUS, LOAD, MODULUS, law)
-    second = lubricated_films(21 * product, 3 * RADIUS, 21 * LOAD, 7 * MODULUS, larger)
+    first = lubricated_films(
+        product, cylinder_radius=RADIUS, load_per_length=LOAD, reduced_modulus=MODULUS, asperities=law
+    )
+    second = lubricated_films(
+        21 * product,
+        cylinder_radius=3 * RADIUS,
+        load_per_length=21 * LOAD,
+        reduced_modulus=7 * MODULUS,
+        asperities=larger,
+    )
     np.testing.assert_allclose(second.couette, first.couette, rtol=1e-8)
     np.testing.assert_allclose(second.separation, 3 * first.separation, rtol=1e-8)
     np.testing.assert_allclose(second.asperity_load_share, first.asperity_load_share, rtol=1e-7, atol=1e-9)
@@ -182,9 +260,20 @@ def test_dimensionless_groups():
 
 def test_trivial_factors_change_nothing():
     product = [1e-3, 0.1]
-    plain = lubricated_films(product, RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET))
+    plain = lubricated_films(
+        product,
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+    )
     trivial = lubricated_films(
-        product, RADIUS, LOAD, MODULUS, asperity_law(SURFACE, WET), flow_factors=TrivialFlowFactors()
+        product,
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=asperity_law(SURFACE, WET),
+        flow_factors=TrivialFlowFactors(),
     )
     np.testing.assert_allclose(trivial.couette, plain.couette, rtol=1e-9)
     np.testing.assert_allclose(trivial.separation, plain.separation, rtol=1e-9)
@@ -207,7 +296,14 @@ def test_an_independent_solver_agrees(number, count, tolerance):
     module = plain_solver()
     law = asperity_law(SURFACE, WET)
     scaled = law.scaled(float(HERTZ.half_width**2 / RADIUS), float(HERTZ.maximum_pressure))
-    ours = lubricated_films([number / PER_PRODUCT], RADIUS, LOAD, MODULUS, law, nodes=300)
+    ours = lubricated_films(
+        [number / PER_PRODUCT],
+        cylinder_radius=RADIUS,
+        load_per_length=LOAD,
+        reduced_modulus=MODULUS,
+        asperities=law,
+        nodes=300,
+    )
     position = np.linspace(-5.0, 2.5, count)
     guess = np.append(np.sqrt(np.maximum(1 - position**2, 0.0)), 1.5)
     kernel = module.plain_kernel(position)

@@ -209,7 +209,11 @@ def test_figure_11_sphere_and_cylinder():
     coarse = lubricated_sphere(products, radius, force, modulus, None, polar_grid(30, 20, 0.06, 20.0))
     cylinder = cylinder_of_sphere(force, radius, modulus)
     line = lubricated_films(
-        products, float(cylinder.cylinder_radius), float(cylinder.load_per_length), modulus, nodes=300
+        products,
+        cylinder_radius=float(cylinder.cylinder_radius),
+        load_per_length=float(cylinder.load_per_length),
+        reduced_modulus=modulus,
+        nodes=300,
     )
     here, there, rough_grid = (x.couette + x.pressure_flow for x in (sphere, line, coarse))
     show(products, sphere, line, here, there)
@@ -258,7 +262,15 @@ def both_curves(products, ball, skin, spectrum, stress, grid):
     sphere = lubricated_sphere(products, radius, force, modulus, asperity_law(spectrum, skin), grid)
     contact = relative_contact_area(sphere.asperity_pressure, stress_variance(spectrum, skin))
     friction = stress * (contact @ sphere.area) / force + sphere.couette + sphere.pressure_flow
-    line = stribeck_curve(products, radius, force, skin, spectrum, stress, nodes=200)
+    line = stribeck_curve(
+        products,
+        sphere_radius=radius,
+        normal_force=force,
+        skin=skin,
+        spectrum=spectrum,
+        frictional_shear_stress=stress,
+        nodes=200,
+    )
     return sphere, friction, line
 
 

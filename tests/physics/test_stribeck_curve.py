@@ -32,11 +32,11 @@ def curve(speeds=SPEEDS, nodes=100, flow_factors=None, rheology=None, **changes)
     case = PAPER | changes
     return stribeck_curve(
         speeds,
-        case["radius"],
-        case["force"],
-        LayeredSkin(case["layer"], case["bulk"], 0.5, 0.5, 20e-6),
-        SelfAffineSpectrum(case["h"], 0.78, 1e3, 6.345e3, 1e9),
-        case["stress"],
+        sphere_radius=case["radius"],
+        normal_force=case["force"],
+        skin=LayeredSkin(case["layer"], case["bulk"], 0.5, 0.5, 20e-6),
+        spectrum=SelfAffineSpectrum(case["h"], 0.78, 1e3, 6.345e3, 1e9),
+        frictional_shear_stress=case["stress"],
         flow_factors=flow_factors,
         rheology=rheology,
         nodes=nodes,
@@ -93,7 +93,15 @@ def test_slow_limit_is_dry_friction_at_the_nominal_pressure():
 def test_boundary_part_saturates_where_contact_is_nearly_complete():
     # soft skin without a stiff layer: A/A0 is far from proportional to the pressure, which is nearly that of Hertz
     skin, flat = LayeredSkin(2e4, 2e4, 0.5, 0.5, 20e-6), SelfAffineSpectrum(2e-6, 0.8, 1e4, 1e4, 1e9)
-    found = stribeck_curve([1e-18], 8e-3, 0.2, skin, flat, 1e3, nodes=200)
+    found = stribeck_curve(
+        [1e-18],
+        sphere_radius=8e-3,
+        normal_force=0.2,
+        skin=skin,
+        spectrum=flat,
+        frictional_shear_stress=1e3,
+        nodes=200,
+    )
     modulus = reduced_modulus(2e4, 0.5)
     cylinder = cylinder_of_sphere(0.2, 8e-3, modulus)
     line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, modulus)
@@ -110,7 +118,11 @@ def test_figure_11_slope():
     cylinder = cylinder_of_sphere(1.3, 1e-2, 1.6e6)
     speeds = np.geomspace(1e-3, 0.1, 9)
     films = lubricated_films(
-        speeds, float(cylinder.cylinder_radius), float(cylinder.load_per_length), 1.6e6, nodes=160
+        speeds,
+        cylinder_radius=float(cylinder.cylinder_radius),
+        load_per_length=float(cylinder.load_per_length),
+        reduced_modulus=1.6e6,
+        nodes=160,
     )
     friction = films.couette + films.pressure_flow
     slope = np.diff(np.log(friction)) / np.diff(np.log(speeds))
@@ -198,9 +210,14 @@ def test_flow_curve_is_the_law_it_was_measured_on():
 
 def test_shift_factor_shifts():
     shifted = stribeck_curve(
-        [1e-3, 1e-2], 8e-3, 0.2, LayeredSkin(7e6, 2e4, 0.5, 0.5, 20e-6), named_surface("paper_reference"), 15e6,
+        [1e-3, 1e-2],
+        sphere_radius=8e-3,
+        normal_force=0.2,
+        skin=LayeredSkin(7e6, 2e4, 0.5, 0.5, 20e-6),
+        spectrum=named_surface("paper_reference"),
+        frictional_shear_stress=15e6,
         velocity_shift_factor=20.0,
-    )  # fmt: skip
+    )
     plain = curve([2e-2, 0.2], stress=15e6, nodes=80)
     np.testing.assert_allclose(shifted.friction_coefficient, plain.friction_coefficient, rtol=2e-3)
     assert shifted.speed_viscosity_product.tolist() == [1e-3, 1e-2]
@@ -229,16 +246,36 @@ def test_batches_are_rows():
     surface = SelfAffineSpectrum([22.4e-6, 10e-6], 0.78, 1e3, 6.345e3, 1e9)
     force = np.array([[0.1], [0.2], [0.4]])
     speeds = np.array([1e-4, 1e-2])
-    found = stribeck_curve(speeds, 8e-3, force, skin, surface, [15e6, 5e6], [0.42, 1.0])
+    found = stribeck_curve(
+        speeds,
+        sphere_radius=8e-3,
+        normal_force=force,
+        skin=skin,
+        spectrum=surface,
+        frictional_shear_stress=[15e6, 5e6],
+        area_correction=[0.42, 1.0],
+    )
     assert found.friction_coefficient.shape == (3, 2, 2)
     assert found.strain.shape == (3, 2)
     one = stribeck_curve(
-        speeds, 8e-3, 0.4, LayeredSkin(2e7, 4e4, 0.5, 0.5, 20e-6), SelfAffineSpectrum(10e-6, 0.78, 1e3, 6.345e3, 1e9), 5e6, 1.0
-    )  # fmt: skip
+        speeds,
+        sphere_radius=8e-3,
+        normal_force=0.4,
+        skin=LayeredSkin(2e7, 4e4, 0.5, 0.5, 20e-6),
+        spectrum=SelfAffineSpectrum(10e-6, 0.78, 1e3, 6.345e3, 1e9),
+        frictional_shear_stress=5e6,
+        area_correction=1.0,
+    )
     np.testing.assert_allclose(found.friction_coefficient[2, 1], one.friction_coefficient, rtol=1e-12)
     single = stribeck_curve(
-        1e-2, 8e-3, 0.4, LayeredSkin(2e7, 4e4, 0.5, 0.5, 20e-6), SelfAffineSpectrum(10e-6, 0.78, 1e3, 6.345e3, 1e9), 5e6, 1.0
-    )  # fmt: skip
+        1e-2,
+        sphere_radius=8e-3,
+        normal_force=0.4,
+        skin=LayeredSkin(2e7, 4e4, 0.5, 0.5, 20e-6),
+        spectrum=SelfAffineSpectrum(10e-6, 0.78, 1e3, 6.345e3, 1e9),
+        frictional_shear_stress=5e6,
+        area_correction=1.0,
+    )
     assert single.friction_coefficient.shape == ()
     assert single.friction_coefficient == pytest.approx(one.friction_coefficient[1], rel=3e-3)
 

@@ -21,7 +21,14 @@ def random_films(rng, nodes):
     speeds = np.sort(np.exp(rng.uniform(np.log(1e-8), np.log(10.0), int(rng.integers(1, 31)))))
     law = asperity_law(surface, skin)
     radius, load = float(cylinder.cylinder_radius), float(cylinder.load_per_length)
-    return load, lubricated_films(speeds, radius, load, modulus, law, nodes=nodes)
+    return load, lubricated_films(
+        speeds,
+        cylinder_radius=radius,
+        load_per_length=load,
+        reduced_modulus=modulus,
+        asperities=law,
+        nodes=nodes,
+    )
 
 
 def check(seed, cases):
