@@ -33,8 +33,8 @@ def stress_variance(
     -----
     Gauss–Legendre in ln q where the layer is felt, a closed form above. The relative error is below 1e-7 for
     skin (d from 5 to 100 µm, q0 from 3e2 to 5e3 1/m, E0/E1 from 1 to 1e6), and below 5e-5 for d from 0.1 µm
-    to 1 mm, q0 from 1e2 to 1e5 1/m and E0/E1 from 1e-3 to 1e7. A tabulated spectrum is integrated to 2e-5 of
-    V at every wavevector.
+    to 1 mm, q0 from 1e2 to 1e5 1/m and E0/E1 from 1e-3 to 1e7; 3e-4 with a plateau of eight decades. A tabulated
+    spectrum is integrated to 2e-5 of V at every wavevector.
 
     References
     ----------
