@@ -94,10 +94,10 @@ class Weighted:
 def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_000) -> Weighted:
     """Posterior by importance sampling in which all shear stresses are exact given the other parameters.
 
-    ln of friction is ln of shear stress + ln g(other parameters) + effects + scatter. With the other parameters drawn – the
-    scales and the skin from their priors, the scatter about the residuals of a regression on all levels – the logarithms of the shear stresses are
-    those of a linear regression with known covariance: normal, but for their prior. Nothing is shared with the coordinates, the
-    starts and the moves of the sampler, nor with the algebra of the groups; only predictions and priors are.
+    ln of friction is ln of shear stress + ln g(other parameters) + effects + scatter. The other parameters are drawn: the
+    scales and the skin from their priors, the scatter about the residuals of a regression on all levels. Given them, logarithms
+    of shear stresses are those of a linear regression with known covariance: normal, but for their prior. Nothing is shared
+    with the coordinates, the starts and the moves of the sampler, nor the algebra of the groups; only predictions and priors are.
     """
     names = problem.names
     stress = [i for i, name in enumerate(names) if name.startswith("frictional_shear_stress")]
