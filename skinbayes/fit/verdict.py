@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from skinbayes.sampling.causes import Cause
     from skinbayes.sampling.chains import Chains
 
+FEW = 4
+"""Walkers apart that a ridge explains."""
+
 
 def verdict(problem: Problem, chains: Chains, steps_needed: int | None, seed: int) -> str:
     """The sentence of the stopping rule; of a run that has not converged also the cause and the remedy.
@@ -50,10 +53,10 @@ def _shared(problem: Problem, chains: Chains, seed: int) -> dict[str, FloatArray
 
 def _because(found: Cause, chains: Chains) -> str:
     name = found.slowest
-    if found.apart:
+    if _two_places(found):
         return (
-            f"Cause: {found.apart} of {found.walkers} walkers stay apart from the others in {name}: they are stuck, or the "
-            "posterior has two modes."
+            f"Cause: two groups of walkers in different places, {found.apart} of {found.walkers} apart in {name}: "
+            "stuck, or a second mode."
         )
     if found.partner is not None:
         return (
@@ -69,10 +72,15 @@ def _because(found: Cause, chains: Chains) -> str:
     return f"Cause: the run is short for {name}, whose autocorrelation time is {time}."
 
 
+def _two_places(found: Cause) -> bool:
+    """Whether walkers apart are the cause; one or two at the end of a ridge are a sign of the ridge."""
+    return found.apart > (FEW if found.partner is not None else 0)
+
+
 def _remedy(found: Cause, steps: int, steps_needed: int | None) -> str:
     more = max(steps_needed or 0, 2 * steps)
     longer = f"--resume --max-steps {ceil(more / 1000) * 1000}"
-    if found.apart:
+    if _two_places(found):
         tighter = f"a tighter prior on {found.slowest}"
         return f"What to do: fit with other seeds; if both places remain, {tighter} decides between them."
     if found.partner is not None:

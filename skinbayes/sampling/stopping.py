@@ -208,8 +208,9 @@ def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) ->
         if not change <= TAU_CHANGE:
             yield f"the autocorrelation time of {name} is not stable: {change:+.0%} when longer lags are included"
     name, size = _largest(report, -report.ess_bulk / growth)
-    if tau < np.inf and not -size >= options.ess:
-        yield f"the effective sample size of {name} is {-size:.0f}, {options.ess:.0f} is asked for"
+    if not -size >= options.ess:
+        found = f"{-size:.0f}" if size < 0 else "unknown, because its autocorrelation has not died out yet"
+        yield f"the effective sample size of {name} is {found}, {options.ess:.0f} is asked for"
     name, size = _largest(report, -report.ess_tail)
     if not -size >= TAIL_SHARE * options.ess:
         found = f"{-size:.0f}" if size < 0 else "unknown, because their autocorrelation has not died out yet"

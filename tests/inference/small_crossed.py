@@ -94,10 +94,10 @@ class Weighted:
 def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_000) -> Weighted:
     """Posterior by importance sampling in which all shear stresses are exact given the other parameters.
 
-    ln of friction is ln of shear stress + ln g(other parameters) + effects + scatter. With the other parameters drawn – the
-    scales and the skin from their priors, the scatter about the residuals of cells – the logarithms of the shear stresses are
-    those of a linear regression with known covariance: normal, but for their prior. Nothing is shared with the coordinates, the
-    starts and the moves of the sampler, nor with the algebra of the groups; only predictions and priors are.
+    ln of friction is ln of shear stress + ln g(other parameters) + effects + scatter. The other parameters are drawn: the
+    scales and the skin from their priors, the scatter about the residuals of a regression on all levels. Given them, logarithms
+    of shear stresses are those of a linear regression with known covariance: normal, but for their prior. Nothing is shared
+    with the coordinates, the starts and the moves of the sampler, nor the algebra of the groups; only predictions and priors are.
     """
     names = problem.names
     stress = [i for i, name in enumerate(names) if name.startswith("frictional_shear_stress")]
@@ -105,11 +105,11 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
     theta = problem.draw_prior(rng, count)
     labels = problem.conditions.labels
     y = np.log(problem.observed)
-    cell = np.unique(np.stack([labels["person"], labels["body_site"]]), axis=1, return_inverse=True)[
-        1
-    ].ravel()
-    within = y - np.array([y[cell == c].mean() for c in cell])
-    freedom = y.size - len(set(cell.tolist()))
+    told = {p.by for p in problem.free if p.by} | set(problem.groups.columns)
+    columns = [labels[c][:, None] == np.unique(labels[c]) for c in sorted(told & set(labels))]
+    dummies = np.concatenate(columns, axis=1).astype(float)
+    within = y - dummies @ np.linalg.lstsq(dummies, y, rcond=None)[0]
+    freedom = y.size - np.linalg.matrix_rank(dummies)
     middle, width = 0.5 * np.log(within @ within / freedom), 1.5 / np.sqrt(2.0 * freedom)
     log_noise = middle + width * rng.standard_t(5, size=count)
     theta[:, noise] = np.exp(log_noise)
