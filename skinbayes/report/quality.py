@@ -63,7 +63,7 @@ def verdict(fit: Fit) -> list[str]:
         many = and_list([plural(column) for column in group_columns(fit)])
         said.append(f"What is predicted knows the effects of the {many} measured.")
     if scatter := free_scatter(fit):
-        start = "The" if found.misfit else "That is little: the"
+        start = "The" if found.misfit or found.count < FEW else "That is little: the"
         said.append(
             f"{start} scatter was fitted too ({scatter}) and takes in whatever the model misses. Look for dots that lie on "
             "one side together."
