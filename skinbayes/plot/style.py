@@ -99,8 +99,8 @@ def inches(width: str | None, usual: float = WIDTH) -> float:
 
     Examples
     --------
-    >>> round(inches("84 mm"), 4), inches(None)
-    (3.3071, 5.2)
+    >>> round(inches("84 mm"), 3), inches(None)
+    (3.307, 5.2)
     """
     if width is None:
         return usual

@@ -107,8 +107,9 @@ def _data(fit: Fit) -> Iterator[Drawing]:
     yield Drawing(
         "data", plot_data, f"Data and model against {name}",
         f"Measured values against {name}, over what the fitted model predicts.",
-        "Dots are measured. The line is the median of the model, the band around it holds 90 % of the posterior. Pale bars hold "
-        "90 % of what repeated measurements would give: nine dots in ten should lie on them, on both sides all along the axis.",
+        "Dots are measured. Lines are medians of the model, bands around them hold 90 % of the posterior. Pale bars, where there "
+        "are any, hold 90 % of what repeated measurements would give: nine dots in ten should lie on them, on both sides all "
+        "along the axis.",
     )  # fmt: skip
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +12,12 @@ from skinbayes.plot.predictive import (
     observables,
     observed_values,
     predictive_draws,
-    predictive_quantiles,
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report.words import and_list, plural
+from skinbayes.statistics.agreement import Agreement
+from skinbayes.statistics.agreement import examine as agreement_of
 from skinbayes.statistics.noise_families import noise_family
 from skinbayes.vocabulary import lookup
 
@@ -27,72 +27,14 @@ if TYPE_CHECKING:
 FEW = 5
 """With fewer data than this their agreement says little."""
 
-SURPRISING = 0.01
-"""A datum with a smaller share of predictive draws on one side of it is named."""
-
 MOST_NAMED = 6
 
 
-@dataclass(frozen=True)
-class Agreement:
-    """How the data lie among what the fitted model predicts for them.
-
-    Attributes
-    ----------
-    count, wide, narrow : data, and those of them in the 5–95 % and in the 25–75 % range of their predictions
-    few_inside : True if so few in the 5–95 % range would come about by chance less than once in a hundred times
-    far : places of the data that the predictions hardly ever reach, the farthest first
-    statistics : name of a statistic of all data to the number of simulated data sets above it, and of all
-    """
-
-    count: int
-    wide: int
-    narrow: int
-    few_inside: bool
-    far: tuple[int, ...]
-    statistics: dict[str, tuple[int, int]]
-
-    @property
-    def missed(self) -> list[str]:
-        """The statistics that the model does not reproduce."""
-        return [name for name, (above, total) in self.statistics.items() if not 0.05 <= above / total <= 0.95]
-
-    @property
-    def misfit(self) -> bool:
-        """Whether anything speaks against the model."""
-        return self.few_inside or bool(self.far or self.missed)
-
-
 def examine(fit: Fit) -> Agreement:
-    """Hold the data against the posterior predictive draws.
-
-    Coverage of predictive intervals, data in the tails, and posterior predictive p-values of mean and scatter (Gelman, Meng &
-    Stern 1996, Statistica Sinica 6:733). A datum counts as far out if less than 1 % of its predictions lie beyond it, or, of
-    many data, so few that one such datum among all has a chance of 5 %.
-    """
-    from scipy.stats import binom
-
-    observed, quantiles, draws = observed_values(fit), predictive_quantiles(fit), predictive_draws(fit)
-    count = len(observed)
-    wide = int(((quantiles[0] <= observed) & (observed <= quantiles[4])).sum())
-    below = (draws < observed).mean(axis=0)
-    tails = np.minimum(below, 1.0 - below)
-    far = tuple(int(i) for i in np.argsort(tails) if tails[i] < min(SURPRISING, 0.025 / count))
-    statistics: dict[str, tuple[int, int]] = {}
-    if count >= FEW and len(observables(fit)) == 1:
-        simulated = {"mean": draws.mean(axis=1), "scatter between rows": draws.std(axis=1, ddof=1)}
-        real = {"mean": observed.mean(), "scatter between rows": observed.std(ddof=1)}
-        statistics = {
-            name: (int((found > real[name]).sum()), len(found)) for name, found in simulated.items()
-        }
-    return Agreement(
-        count,
-        wide,
-        int(((quantiles[1] <= observed) & (observed <= quantiles[3])).sum()),
-        bool(binom.cdf(wide, count, 0.9) < 0.01),
-        far,
-        statistics,
-    )
+    """Hold the data of a fit against its posterior predictive draws."""
+    observed = observed_values(fit)
+    alike = len(observed) >= FEW and len(observables(fit)) == 1
+    return agreement_of(observed, predictive_draws(fit), alike)
 
 
 def verdict(fit: Fit) -> list[str]:
@@ -117,8 +59,11 @@ def verdict(fit: Fit) -> list[str]:
         ]
     else:
         said = [f"Single values, mean and scatter do not speak against it: {inside}."]
+    if group_columns(fit):
+        many = and_list([plural(column) for column in group_columns(fit)])
+        said.append(f"What is predicted knows the effects of the {many} measured.")
     if scatter := free_scatter(fit):
-        start = "The" if found.misfit else "That is little: the"
+        start = "The" if found.misfit or found.count < FEW else "That is little: the"
         said.append(
             f"{start} scatter was fitted too ({scatter}) and takes in whatever the model misses. Look for dots that lie on "
             "one side together."

@@ -17,6 +17,7 @@ from skinbayes.plot.numbers import interval, percent, share
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import digest, opening, quality, remarks, sentences
 from skinbayes.report.tables import derived_rows
+from skinbayes.statistics.agreement import examine
 
 
 @cache
@@ -70,6 +71,14 @@ def test_many_rows_are_not_far_out_by_chance() -> None:
         observed["friction_coefficient"] = ("row", rng.permuted(draws, axis=0)[0])
         found += bool(quality.examine(replace(fit, groups={**fit.groups, "observed_data": observed})).far)
     assert found <= 8  # 5 % each: 2 expected, more than 8 once in 100,000
+
+
+def test_few_draws_do_not_make_rows_far_out() -> None:
+    """Of 165 data about one lies beyond all of 256 draws on either side, without being far out."""
+    rng = np.random.default_rng(8)
+    found = [examine(rng.normal(size=165), rng.normal(size=(256, 165)), alike=True).far for _ in range(40)]
+    assert sum(map(bool, found)) <= 8  # as above
+    assert examine(np.r_[rng.normal(size=164), 6.0], rng.normal(size=(256, 165)), alike=True).far == (164,)
 
 
 def test_a_fitted_scatter_is_no_praise() -> None:
