@@ -128,6 +128,8 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
         else np.stack([column == v for v in levels], axis=1).astype(float)
     )
     drawn = np.empty((count, len(stress)))
+    flat = prior[names[stress[0]]].family == "uniform"
+    tilt = np.full(len(stress), 1.0 if flat else 0.0)
     for some in np.array_split(np.arange(count), max(1, count // 2000)):
         covariance = theta[some, noise, None, None] ** 2 * np.eye(y.size)
         for name in (n for n in names if n.startswith("group_scale")):
@@ -140,10 +142,14 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
         left = data[some] - best @ design.T
         weight[some] -= 0.5 * np.einsum("bn,bnm,bm->b", left, precision, left)
         weight[some] -= 0.5 * (np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(normal)[1])
-        root = np.linalg.cholesky(np.linalg.inv(normal))
-        drawn[some] = best + np.einsum("bkl,bl->bk", root, rng.standard_normal(best.shape))
+        spread = np.linalg.inv(normal)
+        # a prior flat in the shear stress itself tilts the normal distribution of its logarithm, which moves its mean
+        moved = spread @ tilt
+        weight[some] += best @ tilt + 0.5 * moved @ tilt
+        root = np.linalg.cholesky(spread)
+        drawn[some] = best + moved + np.einsum("bkl,bl->bk", root, rng.standard_normal(best.shape))
     theta[:, stress] = np.exp(drawn)
     for i in stress:
-        weight += prior[names[i]].log_density(theta[:, i]) + np.log(theta[:, i])
+        weight += prior[names[i]].log_density(theta[:, i]) + (1.0 - tilt[0]) * np.log(theta[:, i])
     shares = np.exp(weight - weight.max())
     return Weighted(theta, shares / shares.sum())

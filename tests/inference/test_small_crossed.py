@@ -58,7 +58,10 @@ def test_small_designs_converge_to_the_exact_posterior(design, seed, tmp_path) -
     fit = sample(problem, seed=seed, max_steps=3000)
     print(design, seed, fit.provenance["sampling"]["verdict"])
     assert fit.converged
-    exact = by_regression(problem, np.random.default_rng(seed))
+    # a prior flat in the shear stress prefers wide effects, of which the prior draws hold few
+    exact = by_regression(
+        problem, np.random.default_rng(seed), 160_000 if design == "2x3, uniform" else 40_000
+    )
     assert exact.effective_size > 1000
     assert_agrees(fit, exact)
 
