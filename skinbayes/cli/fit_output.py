@@ -20,7 +20,7 @@ def print_fit(result: Fit, directory: Path, page: Path | None) -> None:
     from skinbayes.fit.manifest import SUMMARY
     from skinbayes.report import remarks
 
-    title = result.provenance["title"] + ("" if result.converged else "   – NOT CONVERGED")
+    title = ("" if result.converged else "NOT CONVERGED – ") + result.provenance["title"]
     rows, crowded = _rows(result)
     print_table(
         ("parameter", "median", "5 %", "95 %", "ESS", "R-hat"), rows, title=title, right=(1, 2, 3, 4, 5)

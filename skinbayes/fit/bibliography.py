@@ -47,6 +47,12 @@ class Reference:
             fields[name] = tuple(value) if isinstance(value, list) else value
         return cls(**fields)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Its fields as a file can hold them, with lists for tuples."""
+        return {
+            name: list(value) if isinstance(value, tuple) else value for name, value in vars(self).items()
+        }
+
     def text(self) -> str:
         """One line, as in a list of references.
 

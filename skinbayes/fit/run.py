@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -176,7 +175,7 @@ def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> d
         "noise": dict(problem.spec.noise),
         "accuracy": problem.model.accuracy,
         "data": data,
-        "references": [asdict(reference) for reference in references(problem)],
+        "references": [reference.to_dict() for reference in references(problem)],
         "versions": _versions(),
         "sampling": {
             "converged": report.converged,

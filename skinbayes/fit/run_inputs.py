@@ -56,7 +56,7 @@ def read_run(directory: Path) -> Held | None:
     except FileNotFoundError:
         return None
     except NotADirectoryError:
-        raise InputError(f"{directory}: a file found, a folder expected") from None
+        raise InputError(f"{directory}: cannot be used for a run (a file found, a folder expected)") from None
     # traces of a process that was killed before it had claimed the folder
     names = [name for name in names if name != LOCK and not _is_leftover(name)]
     if not names:

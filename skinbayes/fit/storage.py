@@ -93,7 +93,9 @@ def _undamaged(run: Path) -> Manifest:
     except PermissionError as error:
         raise InputError(f"{error.filename}: cannot be read ({error.strerror})") from None
     if manifest is None:
-        raise InputError(f"{run / RUN}: missing; {_again(run)}. {alone}")
+        raise InputError(
+            f"{run / RUN}: missing, so this is not a result written by skinbayes, or the file was lost: {_again(run)}. {alone}"
+        )
     for name, what in wrong.items():
         raise InputError(f"{run / name}: {what}. Put the original back, or {_again(run)}. {alone}")
     return manifest

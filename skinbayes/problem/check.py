@@ -184,6 +184,11 @@ def _identify(problem: Problem, draws: FloatArray, positive: NDArray[np.bool_]) 
         return vectors
 
     typical = problem.predict_data(centre)
+    if not np.isfinite(problem.independent_scatter(centre, np.zeros((1, len(typical))))).all():
+        raise InputError(
+            f"{problem.spec.path}: noise: at the prior medians the noise is so small beside the effects of groups "
+            f"({problem.noise_width(centre).min():.2g}) that data of one group could not differ; expected a larger noise_scale"
+        )
     logarithmic = (typical > 0) & positive
     # what scatters is taken on the scale of the predictions
     scale = np.where(logarithmic & ~problem.noise_is_logarithmic, 1 / typical, 1.0)

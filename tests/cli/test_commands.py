@@ -23,10 +23,17 @@ READING = (
 )  # fmt: skip
 
 
+def is_quiet(words, errors):
+    """Nothing on standard error, but that medians of the prior are no result where there are free parameters."""
+    if words == ["predict", "forearm-glass-separate"]:
+        return errors.startswith("note: this is no result of a fit") and errors.count("\n") == 1
+    return errors == ""
+
+
 @pytest.mark.parametrize("words", READING, ids=" ".join)
 def test_one_json_document(words, capsys):
     outcome = run(capsys, *words, "--json")
-    assert outcome.status == 0 and outcome.errors == ""
+    assert outcome.status == 0 and is_quiet(words, outcome.errors)
     document = outcome.document()  # strict: fails on NaN, and on anything before or after the document
     assert isinstance(document, dict) and document
     assert outcome.output.endswith("}\n")
@@ -35,7 +42,7 @@ def test_one_json_document(words, capsys):
 @pytest.mark.parametrize("words", READING, ids=" ".join)
 def test_text_for_people(words, capsys):
     outcome = run(capsys, *words)
-    assert outcome.status == 0 and outcome.errors == ""
+    assert outcome.status == 0 and is_quiet(words, outcome.errors)
     assert len(outcome.output.splitlines()) > 3
     assert "nan" not in outcome.output.lower().split()
     assert "\x1b" not in outcome.output  # no colours when it is not a terminal
@@ -52,7 +59,13 @@ def test_lists_hold_what_is_shipped(capsys):
         assert entry["licence"] and entry["title"] and entry["rows"] > 0
     text = run(capsys, "models").output
     for entry in models:
-        assert sum([entry["name"]] == line.split()[:1] for line in text.splitlines()) == 1
+        assert (
+            sum(
+                line.lstrip().startswith(f"{entry['name']} ") and line[:2].strip() != ""
+                for line in text.splitlines()
+            )
+            == 1
+        )
 
 
 def test_show_says_where_priors_come_from(capsys):

@@ -208,14 +208,15 @@ TOGETHER = """
 import sys, time
 from skinbayes.cli import main
 import skinbayes.fit.run_directory, skinbayes.sampling.ensembles, emcee
-while time.time() < float(sys.argv.pop(1)):
+moment = float(sys.argv.pop(1))
+while time.time() < moment:
     pass
 main()
 """
 
 
 def both_at_once(folder: Path, paths: list[Path], *more: str) -> list[tuple[int, str, str]]:
-    moment = time.time() + 4.0
+    moment = time.time() + 5.0
     processes = [
         subprocess.Popen(
             [sys.executable, "-c", TOGETHER, str(moment), "fit", str(path), "-o", str(folder), "--ess", "500", *more],

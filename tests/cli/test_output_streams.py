@@ -64,7 +64,7 @@ def test_messages_too(place: str) -> None:
 def test_a_full_disk_is_one_sentence(command: list[str]) -> None:
     with Path("/dev/full").open("wb") as full:
         found = start(*command, stdout=full)
-    assert found.returncode == 2
+    assert found.returncode == 4
     assert found.stderr.decode().splitlines() == [
         "skinbayes: output cannot be written: No space left on device"
     ]

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from skinbayes.errors import InputError
+from skinbayes.errors import InputError, MachineError
 from skinbayes.fit import Fit, load_fit, sample
 from skinbayes.plot.numbers import quantity
 from skinbayes.plot.symbols import spoken_name
@@ -274,7 +274,7 @@ def test_page_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest
             Path, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device"))
         )
         patch.setattr("skinbayes.report.page.render", lambda *_: "new")
-        with pytest.raises(InputError, match=r"page\.html: cannot be written"):
+        with pytest.raises(MachineError, match=r"page\.html: cannot be written"):
             write_report(short_fit(), target)
     assert target.read_text(encoding="utf-8") == "as it was"
     assert [path.name for path in tmp_path.iterdir()] == ["page.html"]

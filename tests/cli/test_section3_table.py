@@ -16,7 +16,8 @@ def predict(capsys):
     def at(*pairs: str, model: str = "contact-area") -> dict[str, list[float]]:
         words = [word for pair in pairs for word in ("--set", pair)]
         outcome = run(capsys, "predict", model, "--json", *words)
-        assert outcome.status == 0 and outcome.errors == ""
+        # medians of a prior are no result, which is said where there are free parameters
+        assert outcome.status == 0 and (outcome.errors == "" or "no result of a fit" in outcome.errors)
         return outcome.document()["prediction"]
 
     return at

@@ -69,7 +69,7 @@ def test_spread_columns(tmp_path: Path) -> None:
 
 def test_spread_of_a_label_is_unknown(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="unknown column 'person_standard_deviation'"):
-        load_dataset(write(tmp_path, "person_standard_deviation [1]\n1\n"))
+        load_dataset(write(tmp_path, "normal_force [N],person_standard_deviation [1]\n1,1\n"))
 
 
 def test_values_beyond_the_largest_number_are_refused(tmp_path: Path) -> None:

@@ -14,16 +14,16 @@ from skinbayes.fit import Fit, sample
 from skinbayes.problem import Problem, load_problem
 
 PAGE = Path(__file__).parents[2] / "docs" / "drying.md"
-NO_BRIDGES = '{ fixed = "102 deg", source = "no bridges: the cosines sum to less than 0" }'
+NO_BRIDGES = '{ fixed = "112 deg", source = "no bridges: the cosines sum to less than 0" }'
 HARDENING = '{ lognormal = ["1 um", 0.7], source = "unknown" }'
 TRUTH = {
     "frictional_shear_stress": 15e6, "evaporation_rate": 1.743e-7, "initial_film": 90e-6, "young_modulus_layer": 7e6,
     "yield_stress": 50e6, "rms_height": 22.4e-6, "contact_angle_counterface": 0.2, "film_spread": 3e-7,
-    "hardening_film": 1e-6, "noise_scale": 0.06,
+    "hardening_film": 1e-6, "noise_scale": 0.06, "contact_angle_skin": 1.3963,
 }  # fmt: skip
 KNOWN = {
     "young_modulus_layer": "7 MPa", "yield_stress": "50 MPa", "rms_height": "22.4 um", "initial_film": "90 um",
-    "film_spread": "0.3 um",
+    "film_spread": "0.3 um", "contact_angle_skin": "80 deg",
 }  # fmt: skip
 
 

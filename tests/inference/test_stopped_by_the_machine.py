@@ -13,7 +13,7 @@ from small_models import same_draws
 from small_runs import after, small_problem, small_run, tree
 
 from skinbayes.errors import InputError, MachineError
-from skinbayes.fit import Fit, load_fit
+from skinbayes.fit import Fit, load_fit, run_directory
 from skinbayes.fit.run_directory import RunDirectory
 
 
@@ -89,17 +89,22 @@ def test_a_removed_file_is_written_again(name: str, at: int, tmp_path: Path, who
 def test_a_removed_result_is_noticed(tmp_path: Path, whole: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
     """The folder is carried off while the result is computed from the steps, or right after it was written."""
     problem = small_problem(tmp_path / "model")
-    for moment in ("save", "summary"):
+    for place, moment in (
+        (Fit, "summary"),
+        (run_directory, "result_image"),
+        (run_directory, "write_manifest"),
+    ):
         folder, moved = tmp_path / moment, tmp_path / f"{moment}-moved"
-        original = getattr(Fit, moment)
+        original = getattr(place, moment)
 
-        def act(self, *arguments, original=original, folder=folder, moved=moved, **more):
-            if folder.exists():
+        def act(*arguments, original=original, folder=folder, moved=moved, moment=moment, **more):
+            # the note is written twice: when the folder is claimed, and when there is a result
+            if folder.exists() and (moment != "write_manifest" or (folder / "result.nc").exists()):
                 folder.rename(moved)
-            return original(self, *arguments, **more)
+            return original(*arguments, **more)
 
         with monkeypatch.context() as patch:
-            patch.setattr(Fit, moment, act)
+            patch.setattr(place, moment, act)
             with pytest.raises(MachineError, match=f"is now {moved}"):
                 small_run(problem, folder)
         assert not folder.exists()
