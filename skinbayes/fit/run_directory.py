@@ -98,6 +98,10 @@ class RunDirectory:
             except BaseException:
                 self._lock.release()
                 raise
+        except InputError:
+            raise
+        except ValueError as error:  # a name that no file can have
+            raise InputError(f"{self.path}: cannot be used for a run ({error})") from None
         except OSError as error:
             if error.errno in NO_SPACE:
                 raise MachineError(

@@ -38,11 +38,11 @@ def fit(directory: Path) -> Fit:
 def test_groups_and_dimensions_follow_the_schema(fit: Fit) -> None:
     assert set(fit.groups) == {
         "posterior", "sample_stats", "prior", "prior_predictive", "posterior_predictive", "log_likelihood",
-        "observed_data", "constant_data",
+        "observed_data", "constant_data", "validity",
     }  # fmt: skip
     for name, group in fit.groups.items():
         for variable in group.data_vars.values():
-            if name in ("observed_data", "constant_data"):
+            if name in ("observed_data", "constant_data", "validity"):
                 assert variable.dims == ("row",)
             else:
                 assert variable.dims[:2] == ("chain", "draw")
