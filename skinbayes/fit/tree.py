@@ -99,7 +99,7 @@ def _flags(problem: Problem, draws: FloatArray) -> dict[str, Any]:
     """Share of the draws in which each row's prediction lies at the edge of the theory, by flag."""
     flat = draws.reshape(-1, draws.shape[-1])
     found = problem.flags(flat[:: max(1, len(flat) // FLAG_DRAWS)])
-    return {name: (("row",), values.mean(axis=0)) for name, values in found.items()}
+    return {name: (("row",), values.mean(axis=0), {"units": "1"}) for name, values in found.items()}
 
 
 def prior_groups(problem: Problem, rng: np.random.Generator, count: int) -> dict[str, xarray.Dataset]:
