@@ -23,23 +23,26 @@ from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
 MOST_ROWS = 10_000
 """Rows that a problem may have: so many were run, in less than a gigabyte (benchmarks/rows.py)."""
 
+MOST_ROWS_OF_EXPENSIVE_MODELS = 1_000
+"""Rows that a problem may have whose forward model is expensive: a film or a bridge for each of them."""
 
 MOST_LEVELS = 1_000
 """Levels of a column whose rows may share an effect: so many were run."""
 
 
-def _check_count(path: object, count: int) -> None:
-    if count > MOST_ROWS:
+def _check_count(path: object, count: int, forward: ForwardModel) -> None:
+    most = MOST_ROWS_OF_EXPENSIVE_MODELS if forward.costly else MOST_ROWS
+    if count > most:
         raise InputError(
-            f"{path}: {count} rows; expected at most {MOST_ROWS}, with which the time and memory of a fit were measured: average "
-            "neighbouring rows, or take a part of them"
+            f"{path}: {count} rows; expected at most {most} for the forward model '{forward.name}', with which time and memory "
+            "were measured: average neighbouring rows, or take a part of them"
         )
 
 
 def user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Conditions:
     """Rows of a CSV of the user's; :class:`InputError` if none of its columns is an input of the forward model."""
     dataset = load_dataset(path)
-    _check_count(path, dataset.n_rows)
+    _check_count(path, dataset.n_rows, forward)
     rows = _columns(dataset, set(forward.input_names()), covariate_columns(spec.covariates, dataset))
     if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
         raise InputError(
@@ -72,7 +75,7 @@ def data_rows(
 
     Raises :class:`InputError` for observables that are not predicted, not in the data, or impossible for their noise.
     """
-    _check_count(dataset.path, dataset.n_rows)
+    _check_count(dataset.path, dataset.n_rows, forward)
     covariates = covariate_columns(spec.covariates, dataset)
     rows = _columns(dataset, set(forward.input_names()) - taken, covariates)
     return rows, tuple(_observation(spec, forward, dataset, name) for name in spec.observables)

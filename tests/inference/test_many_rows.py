@@ -19,7 +19,7 @@ from skinbayes.fit.tree import posterior_groups, prior_groups
 from skinbayes.forward.alike_rows import on_distinct, once_for_alike
 from skinbayes.problem import Problem, load_problem
 from skinbayes.problem.pieces import PIECE, in_pieces, named_in_pieces
-from skinbayes.problem.rows import MOST_ROWS
+from skinbayes.problem.rows import MOST_ROWS, MOST_ROWS_OF_EXPENSIVE_MODELS
 
 MEGABYTES = 1000
 """Resident memory that a command may take."""
@@ -192,6 +192,11 @@ def test_more_rows_than_were_ever_run_are_refused(tmp_path: Path) -> None:
     data = write_loads(tmp_path / "data.csv", MOST_ROWS + 1)
     with pytest.raises(InputError, match=rf"{MOST_ROWS + 1} rows.*at most {MOST_ROWS}"):
         load_problem("forearm-glass", data=data)
+    times = tmp_path / "times.csv"
+    most = MOST_ROWS_OF_EXPENSIVE_MODELS
+    times.write_text("time [s]\n" + "".join(f"{t}\n" for t in range(1, most + 2)), encoding="utf-8")
+    with pytest.raises(InputError, match=rf"{most + 1} rows.*at most {most}.*'drying'"):
+        load_problem("drying", conditions=times)
 
 
 def test_a_thousand_rows_are_checked_and_fitted_in_little_memory(tmp_path: Path) -> None:
