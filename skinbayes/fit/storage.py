@@ -49,7 +49,7 @@ def load_fit(path: str | Path) -> Fit:
     path = Path(path)
     run = path if path.is_dir() else None
     file = path if run is None else run / RESULT
-    if not path.exists():
+    if run is None and not path.is_file():
         raise InputError(
             f"{path}: no result found: there is no such folder or file; expected a run that 'skinbayes fit' wrote"
         )

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True)
 class Problem:
     """A statistical model bound to its data; frozen.
 
@@ -75,11 +75,6 @@ class Problem:
     flow_curves: Mapping[str, FlowCurve]
     settings: Mapping[str, str] = field(default_factory=dict)
     surface_file: Path | None = None
-
-    def __repr__(self) -> str:
-        """One line: what the files say in full is in ``spec`` and ``dataset``."""
-        data = f"{self.conditions.n_rows} rows of {self.dataset.key}" if self.dataset else "no data"
-        return f"<Problem {self.name!r}: {data}; free: {', '.join(self.names) or 'nothing'}>"
 
     @property
     def name(self) -> str:

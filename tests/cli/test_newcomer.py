@@ -37,9 +37,6 @@ def test_a_pressure_that_varies_along_a_curve_is_not_given_as_one(tmp_path: Path
     middle = problem.prior_medians()[np.newaxis]
     assert _load(problem, middle, [0, 2, 4]) == ""
     assert "kPa" in _load(problem, middle, [0, 1])
-    assert repr(problem) == (
-        "<Problem 'forearm-glass': 6 rows of loads; free: " + ", ".join(problem.names) + ">"
-    )
 
 
 def test_a_data_file_that_is_not_there_is_met_with_the_one_beside_it(tmp_path: Path) -> None:
