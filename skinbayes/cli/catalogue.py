@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 @click.command()
 @json_option
 def models(as_json: bool) -> None:
-    """List the shipped models, one line each."""
+    """List the shipped models."""
     from skinbayes.files.locate import shipped_names
     from skinbayes.files.modelfile import load_model
 
@@ -32,15 +33,17 @@ def models(as_json: bool) -> None:
             }
         )
         return
-    print_table(
-        ("model", "title", "data set"), [(s.name, s.title, s.dataset or "none: predict only") for s in specs]
-    )
+    rows = [
+        (s.name, "shipped" if s.dataset else "yours" if s.observables else "none", s.title) for s in specs
+    ]
+    print_table(("model", "data", "title"), rows)
+    print_text("data: shipped with the model; yours, with --data; or none, so that the model only predicts")
 
 
 @click.command()
 @json_option
 def datasets(as_json: bool) -> None:
-    """List the shipped data sets, one line each."""
+    """List the shipped data sets."""
     from skinbayes.files.locate import shipped_names
 
     found = [(name, *_read(name)) for name in shipped_names("datasets")]
@@ -97,7 +100,7 @@ def _show_model(name: str, as_json: bool) -> None:
             "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
         })  # fmt: skip
         return
-    print_text(spec.title, "", spec.description, "")
+    print_text(spec.title, "", *_paragraphs(spec.description), "")
     print_text(f"forward model: {spec.forward} – {problem.forward.summary}")
     print_text(
         f"data set:      {spec.dataset or ('yours, with --data' if spec.observables else 'none (predict only)')}"
@@ -122,6 +125,12 @@ def _show_model(name: str, as_json: bool) -> None:
     print_table(("parameter", "prior or value", "source"), rows)
 
 
+def _paragraphs(text: str) -> list[str]:
+    """Text of a model file without the line breaks inside its paragraphs: the terminal has a width of its own."""
+    paragraphs = [" ".join(lines.split()) for lines in re.split(r"\n\s*\n", text)]
+    return [line for paragraph in paragraphs for line in (paragraph, "")][:-1]
+
+
 def _show_dataset(name: str, as_json: bool) -> None:
     provenance, table = _read(name)
     headers, rows = table.header, table.rows
@@ -136,7 +145,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
         )
         return
     if provenance is not None:
-        say(f"{provenance.title}\n{', '.join(provenance.authors)}\n")
+        print_text(provenance.title, ", ".join(provenance.authors), "")
         texts = (
             "doi",
             "licence",
@@ -150,7 +159,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
         for label in texts:
             value = getattr(provenance, label)
             if value:
-                say(
+                print_text(
                     f"{label.replace('_', ' ') + ':':16}{', '.join(value) if isinstance(value, list) else value}"
                 )
         if provenance.caveats:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, print_text
 
 if TYPE_CHECKING:
     from skinbayes.comparison import Comparison
@@ -37,14 +37,19 @@ def compare(runs: tuple[str, ...], refit: bool, as_json: bool) -> None:
         print_json(result.to_dict())
         return
     rows = [
-        (m.name, f"{m.elpd_loo:.2f}", f"{m.elpd_loo_se:.2f}", f"{m.elpd_difference:.2f}", f"{m.elpd_difference_se:.2f}",
+        (m.name, f"{m.elpd_loo:.2f} ± {m.elpd_loo_se:.2f}", f"{m.elpd_difference:.2f} ± {m.elpd_difference_se:.2f}",
          f"{m.p_loo:.1f}", f"{m.weight:.2f}", str(m.unreliable_rows))
         for m in result.models
     ]  # fmt: skip
-    headers = ("model", "elpd", "se", "difference", "se", "p_loo", "weight", "unreliable rows")
-    print_table(headers, rows, right=range(1, 8))
+    headers = ("model", "elpd", "difference", "p_loo", "weight", "unreliable")
+    print_table(headers, rows, right=range(1, 6))
     for column in result.columns:
         _print_levels(result, column)
+    print_text(
+        "elpd: expected log predictive density of the data, each left out in turn, ± standard error; more is better. p_loo: "
+        "effective number of parameters. weight: share in the mixture of the models that predicts best. unreliable: data that "
+        "importance sampling cannot leave out."
+    )
     print_sentences(result.sentences())
 
 
@@ -52,7 +57,8 @@ def _print_levels(result: Comparison, column: str) -> None:
     rows = []
     for model in sorted(result.models, key=lambda model: -model.left_out[column].elpd):
         entry = model.left_out[column]
-        numbers = (entry.elpd, entry.elpd_se, entry.difference, entry.difference_se)
-        rows.append((model.name, *(f"{number:.2f}" for number in numbers), str(len(entry.unreliable))))
-    headers = ("model", "elpd", "se", "difference", "se", "unreliable")
-    print_table(headers, rows, title=f"one {column} left out at a time", right=range(1, 6))
+        pairs = ((entry.elpd, entry.elpd_se), (entry.difference, entry.difference_se))
+        said = (f"{value:.2f} ± {error:.2f}" for value, error in pairs)
+        rows.append((model.name, *said, str(len(entry.unreliable))))
+    headers = ("model", "elpd", "difference", "unreliable")
+    print_table(headers, rows, title=f"one {column} left out at a time", right=range(1, 4))

@@ -126,22 +126,28 @@ def print_table(
     Words are never broken. A table whose words are too wide for the terminal becomes a list: for each row the first column
     and below it the others, each with its header.
     """
-    from rich.padding import Padding
     from rich.text import Text
 
     cells = [[_cell(cell) for cell in row] for row in rows]
     terminal = console()
     for gap in (3, 2):
         if widths := _column_widths(headers, cells, right, terminal.width - gap * len(headers) + 1):
-            terminal.print(_table(headers, cells, title, right, widths, gap))
+            table = _table(headers, cells, title, right, widths, gap)
+            if terminal.is_terminal:
+                terminal.print(table)
+                return
+            with terminal.capture() as captured:
+                terminal.print(table)
+            # blanks that fill up a line are of no use to who reads or compares a file
+            click.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
             return
     if title:
         terminal.print(Text(printable(title), style="italic"))
     for first, *others in cells:
-        terminal.print(Text(f"{headers[0]}: {first}"))
+        _print_indented(terminal, f"{headers[0]}: {first}", 0)
         for header, cell in zip(headers[1:], others, strict=True):
             if cell:
-                terminal.print(Padding(Text(f"{header}: {cell}"), (0, 0, 0, 2)))
+                _print_indented(terminal, f"{header}: {cell}", 2)
     terminal.print("")
 
 
@@ -199,6 +205,14 @@ def print_text(*paragraphs: str) -> None:
         terminal.print(Text(printable(paragraph)))
 
 
+def _print_indented(terminal: Console, text: str, indent: int) -> None:
+    """Print text whose every line is indented, wrapped, without blanks at the ends of lines."""
+    from rich.text import Text
+
+    for line in Text(text).wrap(terminal, terminal.width - indent):
+        terminal.print(Text(" " * indent + line.plain.rstrip()))
+
+
 def _cell(text: str) -> str:
     shown = text if len(text) <= LONGEST_CELL else f"{text[: LONGEST_CELL - 40]}… ({len(text)} characters)"
     return printable(shown).replace("\n", "\\n")
@@ -206,11 +220,10 @@ def _cell(text: str) -> str:
 
 def print_sentences(sentences: Iterable[str], title: str = "") -> None:
     """Print sentences as a list, wrapped."""
-    from rich.padding import Padding
     from rich.text import Text
 
     terminal = console()
     if title:
         terminal.print(Text(printable(title), style="bold"))
     for sentence in sentences:
-        terminal.print(Padding(Text(printable(f"- {sentence}")), (0, 0, 0, 1)))
+        _print_indented(terminal, printable(f"- {sentence}"), 1)

@@ -57,6 +57,10 @@ def read_run(directory: Path) -> Held | None:
         return None
     except NotADirectoryError:
         raise InputError(f"{directory}: cannot be used for a run (a file found, a folder expected)") from None
+    except ValueError as error:  # a null byte in the name
+        raise InputError(
+            f"{directory}: cannot be used for a run ({error}); expected the name of a folder"
+        ) from None
     # traces of a process that was killed before it had claimed the folder
     names = [name for name in names if name != LOCK and not _is_leftover(name)]
     if not names:

@@ -49,6 +49,10 @@ def load_fit(path: str | Path) -> Fit:
     path = Path(path)
     run = path if path.is_dir() else None
     file = path if run is None else run / RESULT
+    if run is None and not path.is_file():
+        raise InputError(
+            f"{path}: no result found: there is no such folder or file; expected a run that 'skinbayes fit' wrote"
+        )
     if not file.is_file():
         raise InputError(f"{path}: no result found ({file.name} is missing){_unfinished(path)}")
     manifest = None if run is None else _undamaged(run)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit
     from skinbayes.forward import Profile
     from skinbayes.problem import Problem
+    from skinbayes.problem.inputs import Conditions
 
 DRAWS = 200
 """Posterior draws that a band is made of."""
@@ -61,7 +62,7 @@ def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
         known = np.isfinite(curves).any(axis=0)
         quantiles = np.full((len(LEVELS), len(abscissa)), np.nan)
         quantiles[:, known] = np.nanquantile(curves[:, known], LEVELS, axis=0)
-        label = position + _row_text(names, rows, shared) + _load(problem, middle, rows)
+        label = position + _row_text(problem, names, rows, shared) + _load(problem, middle, rows)
         bands.append(Band(label, rows, abscissa, quantiles))
     return bands
 
@@ -140,19 +141,42 @@ def _spread_out(alike: dict[tuple[float, ...], list[int]]) -> list[list[int]]:
     return [alike[ordered[i]] for i in np.linspace(0, len(ordered) - 1, MOST_KINDS).round().astype(int)]
 
 
-def _row_text(names: list[str], rows: list[int], shared: bool) -> str:
+def _row_text(problem: Problem, names: list[str], rows: list[int], shared: bool) -> str:
+    """Whose curve it is: what these rows have in common and no other row has, or else the rows themselves."""
     if shared:
         return "all rows" if len(names) > 1 else names[0]
-    found = [names[row] for row in rows]
-    return ", ".join(found) if len(found) <= 3 else f"{found[0]} and {len(found) - 1} more"
+    found = [names[row] if not names[row].isdigit() else f"row {names[row]}" for row in rows]
+    if len(found) <= 3:
+        return ", ".join(found)
+    return _in_common(problem.conditions, rows) or f"{found[0]} and {len(found) - 1} more"
+
+
+def _in_common(conditions: Conditions, rows: list[int]) -> str:
+    """The label, all labels together or the condition that tells these rows from all others; empty if none does."""
+    labels = [[str(value) for value in column] for column in conditions.labels.values()]
+    telling = [column for column in labels if len(set(column)) > 1]
+    if telling:
+        telling.append([", ".join(parts) for parts in zip(*telling, strict=True)])
+    for name, values in conditions.values.items():
+        known = QUANTITIES[name]
+        telling.append([f"{known.symbol} = {quantity(float(value), known.unit, 3)}" for value in values])
+    chosen = set(rows)
+    for column in telling:
+        inside = {column[row] for row in rows}
+        if len(inside) == 1 and not any(
+            value in inside for row, value in enumerate(column) if row not in chosen
+        ):
+            return inside.pop()
+    return ""
 
 
 def _load(problem: Problem, middle: FloatArray, rows: list[int]) -> str:
-    """What presses the skin in these rows, in brackets: the nominal pressure, or the force."""
+    """What presses the skin in these rows, in brackets: the nominal pressure, or the force; empty where it varies."""
     count = problem.conditions.n_rows
     known = {**problem.inputs(middle), **problem.derived(middle)}
     for name in ("nominal_pressure", "normal_force"):
         if name in known:
-            value = float(known[name][0, rows[0] if known[name].shape[-1] == count else 0])
-            return f" ({QUANTITIES[name].symbol} = {quantity(value, QUANTITIES[name].unit, 2)})"
+            values = known[name][0, rows] if known[name].shape[-1] == count else known[name][0, :1]
+            said = {quantity(float(value), QUANTITIES[name].unit, 2) for value in values}
+            return f" ({QUANTITIES[name].symbol} = {said.pop()})" if len(said) == 1 else ""
     return ""

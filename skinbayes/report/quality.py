@@ -169,7 +169,7 @@ def sampling(fit: Fit) -> str:
     run = fit.provenance["sampling"]
     return (
         f"The computation {'converged' if fit.converged else 'has NOT converged'}: effective sample size at least "
-        f"{number(float(np.min(run['ess_bulk'])), 3)}, R-hat at most {np.max(run['r_hat']):.3f}."
+        f"{np.min(run['ess_bulk']):.0f}, R-hat at most {np.max(run['r_hat']):.3f}."
     )
 
 
