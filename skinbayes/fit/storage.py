@@ -117,7 +117,8 @@ def _rebuild(run: Path | None, manifest: Manifest | None, provenance: Mapping[st
     try:
         shipped = str(provenance["model_path"])
         problem = _from_copies(run, manifest) if run and manifest else load_problem(shipped)
-        if _is_same(problem, provenance):
+        # copies were compared with their checksums; of any other model file nothing is known
+        if _is_same(problem, provenance) if run and manifest else _is_identical(problem, provenance):
             return _renamed(problem, provenance)
     except (InputError, OSError, ValueError, KeyError) as error:
         reason = str(error)
@@ -161,6 +162,11 @@ def _renamed(problem: Problem, provenance: Mapping[str, Any]) -> Problem:
     key = str(provenance["data"].get("key", ""))
     dataset = None if problem.dataset is None else replace(problem.dataset, key=key or problem.dataset.key)
     return replace(problem, spec=spec, dataset=dataset)
+
+
+def _is_identical(problem: Problem, provenance: Mapping[str, Any]) -> bool:
+    """Whether everything that a posterior depends on is what it was, the noise and the version of skinbayes included."""
+    return problem.fingerprint == provenance.get("fingerprint")
 
 
 def _is_same(problem: Problem, provenance: Mapping[str, Any]) -> bool:

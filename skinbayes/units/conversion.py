@@ -84,10 +84,10 @@ def unit_conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
         source = registry.parse_units(canonical)
     except Exception as error:  # Pint's parser has many ways to fail; all mean "not a unit"
         raise UnknownUnit(from_unit) from error
-    # Pint takes an angle for a number; a friction coefficient in degrees is a mistake nevertheless.
-    angle = source.dimensionless and registry.get_base_units(source)[1] != registry.get_base_units(target)[1]
-    if angle or source.dimensionality != target.dimensionality:
+    if source.dimensionality != target.dimensionality:
         raise OtherDimension(from_unit, _meaning_of(source))
+    if _counts_angles(registry, source, target):
+        raise OtherDimension(from_unit, _meaning_of(source) if source.dimensionless else "an angle times it")
     try:
         offset = float(registry.Quantity(0.0, source).to(target).magnitude)
         if offset != 0.0:  # the scale of a temperature: far from its zero the difference keeps its digits
@@ -102,6 +102,19 @@ def unit_conversion(from_unit: str, to_unit: str) -> tuple[float, float, float]:
     if factor < 1.0 and isfinite(inverse) and abs(inverse - round(inverse)) <= 1e-12 * inverse:
         return 1.0, float(f"{round(inverse):.15g}"), 0.0
     return (float(f"{factor:.15g}") if factor == round(factor) else factor), 1.0, 0.0
+
+
+def _counts_angles(registry: Any, source: Any, target: Any) -> bool:
+    """Whether a unit holds an angle where none belongs.
+
+    Pint takes an angle for a number; a friction coefficient in degrees is a mistake nevertheless, and so are degrees times
+    anything. An angle per length or time is a wavevector or a rate.
+    """
+    found, wanted = (dict(registry.get_base_units(unit)[1]._units) for unit in (source, target))
+    powers = found.pop("radian", 0), wanted.pop("radian", 0)
+    return powers[0] != powers[1] and not (
+        powers[0] == 1 and found and all(power < 0 for power in found.values())
+    )
 
 
 def _meaning_of(source: Any) -> str:

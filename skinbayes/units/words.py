@@ -86,10 +86,11 @@ NO_UNITS = {
     "px": "a pixel has no size of its own: convert with the resolution of the picture",
     "dot": "a dot has no size of its own: convert with the resolution of the picture",
     "rpm": "a rotation is no speed: the speed is 2π times the radius times the rotations per time",
+    "rh": "relative humidity is a share: write 50 % or 0.5",
     "hz": "a frequency is written 1/s, and a shear rate or a speed is something else",
 }
 """Words that are often meant to be units, and why they are none."""
-_SAME = {"pixel": "px", "pixels": "px", "dots": "dot", "pt": "dot", "point": "dot"}
+_SAME = {"%rh": "rh", "pixel": "px", "pixels": "px", "dots": "dot", "pt": "dot", "point": "dot"}
 
 WITHOUT_DIMENSION = frozenset(("", "1", "-", "–", "—"))
 """What stands in the brackets of a number without dimension."""
@@ -115,7 +116,9 @@ _ALIKE = str.maketrans({
     "º": "°", "˚": "°", "μ": "µ", "−": "-", "‐": "-", "‑": "-", "–": "-", "⁄": "/", "∕": "/", "÷": "/",
     "·": "*", "⋅": "*", "∙": "*", "•": "*", "×": "*", "‧": "*",
 })  # fmt: skip
-_DEGREES = re.compile(r"(?:°|\bdeg(?:rees?)?\.?)\s*(?:([Cc])(?:elsius)?|([Ff])(?:ahrenheit)?)(?![A-Za-z])")
+_DEGREES = re.compile(
+    r"(?:°|\bdeg(?:rees?)?\.?)\s*(?:([Cc])(?:elsius)?|([Ff])(?:ahrenheit)?|(?:[Kk]elvins?|K))(?![A-Za-z])"
+)
 _POWER = r"(?:\s*(?:\^|\*\*)\s*(?:\(\s*[+-]?[1-9]\s*\)|[+-]?[1-9])|[+-]?[1-9])(?![0-9]|\s*(?:\^|\*\*))"
 _WORD = re.compile(rf"(?P<word>[A-Za-zµÅ°%‰_]+)(?P<power>{_POWER})?")
 _BETWEEN = re.compile(r"\s*/\s*|\s+per\s+|\s*\*\s*|\.(?=[A-Za-zµ])|-(?=[A-Za-zµ])|\s+")
@@ -137,8 +140,8 @@ def plain_unit(text: str) -> str:
     >>> plain_unit("N⋅m⁻¹"), plain_unit("ºC"), plain_unit("deg C")
     ('N*m-1', 'degC', 'degC')
     """
-    text = unicodedata.normalize("NFKC", text[: 4 * _LONGEST].translate(_ALIKE)).translate(_ALIKE).strip()
-    return _DEGREES.sub(lambda found: "degC" if found[1] else "degF", text)
+    text = unicodedata.normalize("NFKC", text.translate(_ALIKE)).translate(_ALIKE).strip()
+    return _DEGREES.sub(lambda found: "degC" if found[1] else "degF" if found[2] else "K", text)
 
 
 def canonical_unit(text: str) -> str:
@@ -165,6 +168,8 @@ def canonical_unit(text: str) -> str:
     """
     if text.strip() in WITHOUT_DIMENSION:
         return ""
+    if len(text) > 4 * _LONGEST:  # before anything is made of it: characters may stand for many
+        raise UnknownUnit(text[: 4 * _LONGEST])
     plain = plain_unit(text)
     if len(plain) > _LONGEST:
         raise UnknownUnit(plain)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import pytest
 from command_line import Outcome, run, run_process
 
@@ -238,6 +239,16 @@ def test_places_that_cannot_be_written(capsys, tmp_path):
     message(run(capsys, "fit", "forearm-glass", "-o", "/proc/nowhere"), "cannot be used for a run")
     message(run(capsys, "fit", "forearm-glass", "-o", "a\0b"), "cannot be used for a run")
     assert (tmp_path / "file").read_text() == "x"
+
+
+def test_a_file_that_cannot_be_written_has_its_own_name(capsys, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device", str(tmp_path / ".0f.partial"))
+
+    monkeypatch.setattr("skinbayes.atomic.os.open", full)
+    outcome = run(capsys, "new", "forearm-glass", "-o", tmp_path / "mine.toml")
+    assert outcome.status == 4
+    assert "mine.toml: No space left" in outcome.errors and "partial" not in outcome.errors
 
 
 def test_as_a_process(tmp_path):

@@ -55,11 +55,34 @@ def test_as_people_spell_it(spelling: str, unit: str, factor: float) -> None:
         ("20 °C", 293.15), ("20 ºC", 293.15), ("20 ˚C", 293.15), ("20 degC", 293.15), ("20 deg C", 293.15), ("20 C", 293.15),
         ("20 ℃", 293.15), ("20 Celsius", 293.15), ("20 degrees Celsius", 293.15), ("293.15 K", 293.15), ("293.15 kelvin", 293.15),
         ("68 °F", 293.15), ("68 degF", 293.15), ("-40 °F", 233.15), ("-40 degC", 233.15), ("212 F", 373.15),
-        ("212 deg F", 373.15),
+        ("212 deg F", 373.15), ("293 deg K", 293.0), ("293 °K", 293.0), ("293 degrees Kelvin", 293.0),
     ],
 )  # fmt: skip
 def test_scales_of_temperature(text: str, kelvin: float) -> None:
     assert parse_quantity(text, "K", where="x") == pytest.approx(kelvin, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [("5 deg m", "m"), ("5 rad Pa", "Pa"), ("5 m/rad", "m"), ("5 N/deg", "N"), ("5 rad2/m", "1/m"), ("5 1/deg", "1"),
+     ("5 °", "1"), ("5 deg", "K"), ("5 m/m", "rad")],
+)  # fmt: skip
+def test_an_angle_is_no_number(text: str, unit: str) -> None:
+    with pytest.raises(InputError, match="wrong dimension"):
+        parse_quantity(text, unit, where="x")
+
+
+def test_an_angle_per_length_or_time_is_a_wavevector_or_a_rate() -> None:
+    assert parse_quantity("5 rad/um", "1/m", where="x") == pytest.approx(5e6)
+    assert parse_quantity("180 deg/s", "1/s", where="x") == pytest.approx(3.141592653589793)
+
+
+@pytest.mark.parametrize("blanks", [160, 300, 100_000])
+def test_nothing_after_many_blanks_is_overlooked(blanks: int) -> None:
+    with pytest.raises(InputError, match="unknown unit"):
+        parse_quantity(f"5 m{' ' * blanks}/s", "m", where="x")
+    with pytest.raises(InputError, match="unknown"):
+        convert_array([5.0], f"m{' ' * blanks}/s", "m", "x")
 
 
 def test_differences_of_temperature() -> None:
@@ -107,6 +130,8 @@ def test_no_other_word_is_a_unit(word: str, unit: str) -> None:
         ("3 newtom", "N", "'newton'"),
         ("0.5 n", "N", "'N'"),
         ("3 mPa*S", "Pa s", "'mPa*s'"),
+        ("50 %RH", "1", "relative humidity is a share"),
+        ("50 % RH", "1", "relative humidity is a share"),
         ("3 1/px", "1/m", "a pixel has no size of its own"),
         ("100 rpm", "m/s", "radius"),
         ("50 g", "N", "wrong dimension (a mass)"),

@@ -201,6 +201,19 @@ def test_a_result_that_is_not_listed_is_not_finished(run: Path, tmp_path: Path) 
         load_fit(copy)
 
 
+def test_a_result_alone_is_not_joined_to_a_model_with_other_noise(tmp_path: Path) -> None:
+    problem = two_parameters(tmp_path)
+    fit = sample(problem, seed=1, directory=tmp_path / "run", **SHORT)
+    file = fit.save(tmp_path / "alone.nc")
+    same = load_fit(file).problem
+    assert same is not None and same.fingerprint == problem.fingerprint
+    model = problem.spec.path
+    text = model.read_text()
+    assert 'family = "lognormal"' in text
+    model.write_text(text.replace('family = "lognormal"', 'family = "gaussian"'))
+    assert load_fit(file).problem is None
+
+
 def test_a_model_that_cannot_be_built_again_is_told(run: Path, whole: Fit, tmp_path: Path) -> None:
     copy = copied(run, tmp_path)
     note = read_note(copy / "run.json")
