@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+
 import pytest
 from command_line import Outcome, run, run_process
 
