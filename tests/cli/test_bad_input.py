@@ -246,7 +246,7 @@ def test_a_file_that_cannot_be_written_has_its_own_name(capsys, tmp_path, monkey
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device", str(tmp_path / ".0f.partial"))
 
-    monkeypatch.setattr("skinbayes.atomic.os.open", full)
+    monkeypatch.setattr("skinbayes.cli.new_file.write_atomically", full)
     outcome = run(capsys, "new", "forearm-glass", "-o", tmp_path / "mine.toml")
     assert outcome.status == 4
     assert "mine.toml: No space left" in outcome.errors and "partial" not in outcome.errors
