@@ -43,10 +43,12 @@ def checked(path: Path) -> str:
         raise DamagedFile("no ordinary file")
     with path.open("rb") as file:
         size = left = file.seek(0, os.SEEK_END) - _SEAL_SIZE
-        file.seek(max(size, 0))
-        seal = file.read()
-        # looked at before the whole is read, because a file without a seal may be of any size
-        if size < 0 or not seal.endswith(_END % size):
+        # looked at before the whole is read, because a file without a seal may be of any size, or have no end
+        if size < 0:
+            raise DamagedFile("it has no checksum at its end")
+        file.seek(size)
+        seal = file.read(_SEAL_SIZE)
+        if not seal.endswith(_END % size):
             raise DamagedFile("it has no checksum at its end")
         file.seek(0)
         found = hashlib.sha256()

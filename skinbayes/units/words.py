@@ -227,7 +227,8 @@ def nearest_units(unknown: UnknownUnit) -> list[str]:
     word = unknown.word
     if not word:
         return []
-    known = [*_SYMBOLS, *_NAMES]
+    plurals = {f"{name}s" for name in _NAMES}
+    known = [*_SYMBOLS, *(name for name in _NAMES if name not in plurals)]
     same = sorted((symbol for symbol in _SYMBOLS if symbol.lower() == word.lower()), key=str)
     close = get_close_matches(word, known, n=6, cutoff=0.6)
     return [
