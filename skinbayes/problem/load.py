@@ -16,7 +16,7 @@ from skinbayes.forward import ROUGHNESS_INPUTS, Tables, forward_model
 from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
 from skinbayes.problem.covariates import check_covariates
 from skinbayes.problem.failures import explained
-from skinbayes.problem.inputs import Conditions, plan_inputs
+from skinbayes.problem.inputs import plan_inputs
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.problem import Problem
 from skinbayes.problem.rheology import REPLACED, flow_curves_of, load_flow_curves
@@ -207,11 +207,3 @@ def _dataset(spec: ModelSpec, data: str | Path | Dataset | None) -> Dataset:
         return dataset.select(spec.rows) if spec.rows else dataset
     except InputError as error:
         raise InputError(f"{spec.path}: data.rows: {error}") from None
-
-
-def _columns(dataset: Dataset, names: set[str]) -> Conditions:
-    values = {key: np.asarray(column, dtype=float) for key, column in dataset.columns.items() if key in names}
-    labels = {
-        key: column.astype(np.str_) for key, column in dataset.columns.items() if column.dtype.kind == "U"
-    }
-    return Conditions(values, labels, dataset.n_rows)
