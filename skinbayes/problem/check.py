@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,8 @@ from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.problem.failures import explained
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
+from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.units import format_quantity
-
-if TYPE_CHECKING:
-    from skinbayes.problem.problem import Problem
 
 DRAWS = 1000
 """Prior draws that are tried."""
@@ -72,7 +70,7 @@ class CheckReport:
         return {"model": self.model, "sections": dict(self.sections()), "identifiability": found}
 
 
-def check_problem(problem: Problem, seed: int = 1) -> CheckReport:
+def check_problem(problem: StatisticalModel, seed: int = 1) -> CheckReport:
     """Check a problem before sampling.
 
     Parameters
@@ -95,7 +93,7 @@ def check_problem(problem: Problem, seed: int = 1) -> CheckReport:
     return CheckReport(problem.name, _setup(problem), _priors(problem), predictions, identifiability)
 
 
-def _setup(problem: Problem) -> tuple[str, ...]:
+def _setup(problem: StatisticalModel) -> tuple[str, ...]:
     free, fixed = len(problem.free), len(problem.fixed)
     said = [
         f"'{problem.name}' has {free} free and {fixed} fixed inputs; every value has a unit and lies in its physical range."
@@ -120,7 +118,7 @@ def _setup(problem: Problem) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _priors(problem: Problem) -> tuple[str, ...]:
+def _priors(problem: StatisticalModel) -> tuple[str, ...]:
     said = []
     for parameter in problem.free:
         prior = parameter.prior
@@ -136,7 +134,7 @@ def _priors(problem: Problem) -> tuple[str, ...]:
 
 
 def _predictions(
-    problem: Problem, draws: FloatArray
+    problem: StatisticalModel, draws: FloatArray
 ) -> tuple[tuple[str, ...], NDArray[np.bool_], NDArray[np.bool_]]:
     """Sentences about finite predictions, which of the draws have them, and which data are predicted > 0 by all of those."""
     finite, positive = np.ones(len(draws), dtype=bool), np.ones(0, dtype=bool)
@@ -171,7 +169,9 @@ def _predictions(
     return tuple(said), finite, positive
 
 
-def _identify(problem: Problem, draws: FloatArray, positive: NDArray[np.bool_]) -> Identifiability | None:
+def _identify(
+    problem: StatisticalModel, draws: FloatArray, positive: NDArray[np.bool_]
+) -> Identifiability | None:
     scatter = (*noise_parameter_names(), "group_scale")
     entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
     if not entering:
@@ -223,7 +223,7 @@ def _identify(problem: Problem, draws: FloatArray, positive: NDArray[np.bool_]) 
     )
 
 
-def _groups(problem: Problem) -> dict[str, NDArray[np.intp]]:
+def _groups(problem: StatisticalModel) -> dict[str, NDArray[np.intp]]:
     groups: dict[str, NDArray[np.intp]] = {}
     if problem.groups is not None:  # rows scatter together, so that none of them stands by itself
         return groups

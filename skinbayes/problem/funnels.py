@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.statistics.funnels import Funnel
-
-if TYPE_CHECKING:
-    from skinbayes.problem.problem import Problem
 
 LEAST_SLOPE = 0.1
 """Of ln of the data against ln of a parameter, below which a parameter and an effect do not exchange much."""
@@ -18,7 +14,7 @@ LEAST_SLOPE = 0.1
 _STEP = 1e-3  # in ln of a parameter, for a slope
 
 
-def funnels_of(problem: Problem, logarithmic: tuple[bool, ...]) -> tuple[Funnel, ...]:
+def funnels_of(problem: StatisticalModel, logarithmic: tuple[bool, ...]) -> tuple[Funnel, ...]:
     """The funnels of a problem with groups on ln of its data; at most one for each group.
 
     Parameters
@@ -48,7 +44,7 @@ def funnels_of(problem: Problem, logarithmic: tuple[bool, ...]) -> tuple[Funnel,
 
 
 def _located(
-    problem: Problem, medians: FloatArray, levels: list[int], column: str
+    problem: StatisticalModel, medians: FloatArray, levels: list[int], column: str
 ) -> tuple[tuple[float, ...], float] | None:
     """Centre and width of a funnel from a regression on all grouping columns; None if a level does not act."""
     labels, columns = problem.conditions.labels, problem.groups.columns if problem.groups else ()

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.problem.bound import BoundModel
 from skinbayes.problem.observations import Observation, propagated_spread
 from skinbayes.problem.pieces import in_pieces
 from skinbayes.statistics.groups import CrossedGroups
-
-if TYPE_CHECKING:
-    from skinbayes.problem.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -27,7 +24,7 @@ class Likelihood:
     are normal and integrated out.
     """
 
-    problem: Problem
+    problem: BoundModel
 
     def pointwise(self, theta: FloatArray) -> FloatArray:
         """ln p of each datum, shape ``(B, M)``: given θ, and given all other data where groups share effects."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import Ranges
-
-if TYPE_CHECKING:
-    from skinbayes.problem.problem import Problem
+from skinbayes.statistics.priors import Prior
 
 DRAWS = 2000
 """Prior draws looked at."""
@@ -18,27 +17,35 @@ BEYOND = 1e-5
 """Share of the prior of each parameter that lies beyond the range on either side."""
 
 
-def input_ranges(problem: Problem, seed: int = 4) -> Ranges:
+def input_ranges(
+    priors: Sequence[Prior], inputs: Callable[[FloatArray], Mapping[str, FloatArray]], seed: int = 4
+) -> Ranges:
     """Smallest and largest value of each input over the rows and nearly all of the prior; inputs that are not finite left out.
 
     Parameters
     ----------
-    problem : any problem
+    priors : of each of the D parameters
+    inputs : inputs of the forward model by name for parameter vectors ``(B, D)``
     seed : seed of the prior draws
 
     Notes
     -----
     Looked at are prior draws, and each parameter by itself at its outermost quantiles with the others at their medians.
     """
-    dimension = problem.dimension
-    vectors = np.tile(np.full(dimension, 0.5), (2 * dimension, 1))
+    dimension = len(priors)
+    outermost = np.tile(np.full(dimension, 0.5), (2 * dimension, 1))
     for i in range(dimension):
-        vectors[2 * i : 2 * i + 2, i] = BEYOND, 1 - BEYOND
-    draws = np.concatenate(
-        [problem.prior_transform(vectors), problem.draw_prior(np.random.default_rng([seed]), DRAWS)]
+        outermost[2 * i : 2 * i + 2, i] = BEYOND, 1 - BEYOND
+    rng = np.random.default_rng([seed])
+    draws = np.stack(
+        [
+            np.concatenate([prior.quantile(outermost[:, i]), prior.draw(rng, DRAWS)])
+            for i, prior in enumerate(priors)
+        ],
+        axis=-1,
     )
     found = {}
-    for name, values in problem.inputs(draws).items():
+    for name, values in inputs(draws).items():
         if np.isfinite(values).all():
             found[name] = (float(values.min()), float(values.max()))
     return found

@@ -5,20 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.problem.funnels import funnels_of
+from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
 from skinbayes.statistics.funnels import FunnelTransform
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
-
-if TYPE_CHECKING:
-    from skinbayes.problem.problem import Problem
 
 CANDIDATES_PER_START = 20
 """Prior draws looked at for each start."""
@@ -49,7 +46,7 @@ class PosteriorTarget:
     use_likelihood : False samples the prior alone, a test of the whole machinery
     """
 
-    problem: Problem
+    problem: StatisticalModel
     use_likelihood: bool = True
 
     @property

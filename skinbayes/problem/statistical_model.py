@@ -1,0 +1,159 @@
+"""Prior, likelihood and simulated data of a model bound to its data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.problem.batches import unbatch
+from skinbayes.problem.bound import BoundModel
+from skinbayes.problem.failures import impossible
+from skinbayes.problem.fingerprint import digest_data, digest_model
+from skinbayes.problem.likelihood import Likelihood
+from skinbayes.statistics.densities import LogDensity, LogLikelihood
+
+MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
+
+
+@dataclass(frozen=True)
+class StatisticalModel(BoundModel):
+    """A bound model with the densities of its parameters and of its data."""
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Digest of everything the posterior depends on; a run is only continued where it is the same."""
+        return digest_model(
+            self.spec, self.forward, (*self.free, *self.fixed), self.conditions, self.observations, self.input_spread,
+            self.groups, self.tables, self.data_fingerprint,
+        )  # fmt: skip
+
+    @cached_property
+    def data_fingerprint(self) -> str:
+        """Digest of the data alone; models are compared where it is the same."""
+        return digest_data(self.dataset, self.observations)
+
+    # -- densities ---------------------------------------------------------------------------------------------------
+
+    def log_prior(self, theta: ArrayLike) -> FloatArray:
+        """Log prior density per SI unit of each parameter; ``-inf`` outside the support. Shape ``(B,)`` or scalar."""
+        batch, single = self._batch(theta)
+        return unbatch(self.prior_density()(batch), single)
+
+    def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
+        """Log-likelihood of the data, shape ``(B,)``; ``pointwise=True`` gives ``(B, M)``, one for each datum.
+
+        With group effects the pointwise terms are ln p(datum | all others, θ), which is what leaving one out needs; they do
+        not sum to the whole. NaN and +inf from the forward model become −inf.
+
+        Raises
+        ------
+        InputError
+            The model has no data, or ``theta`` has the wrong number of parameters.
+        """
+        batch, single = self._batch(theta)
+        value = self._likelihood.pointwise(batch) if pointwise else self._likelihood.total(batch)
+        return unbatch(impossible(value), single)
+
+    def log_likelihood_left_out(self, theta: ArrayLike, column: str) -> FloatArray:
+        """ln p(all data of one level | all other data, θ) for each level of a grouping column, shape ``(B, levels)``.
+
+        What leaving out one person, or one liquid, needs. Levels in the order of their first row.
+
+        Raises
+        ------
+        InputError
+            The model has no data, several observables, or no such column.
+        """
+        batch, single = self._batch(theta)
+        return unbatch(impossible(self._likelihood.left_out(batch, column)), single)
+
+    def log_posterior(self, theta: ArrayLike) -> FloatArray:
+        """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
+        batch, single = self._batch(theta)
+        return unbatch(impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
+
+    def prior_transform(self, u: ArrayLike) -> FloatArray:
+        """Map the unit hypercube to parameters by the prior quantiles, as nested samplers need it; shape as ``u``."""
+        batch, single = self._batch(u)
+        columns = [
+            parameter.prior.quantile(batch[:, i]) for i, parameter in enumerate(self.free) if parameter.prior
+        ]
+        return unbatch(np.stack(columns, axis=-1), single)
+
+    def prior_density(self) -> LogDensity:
+        """The prior as a density: it gains a Jacobian when coordinates change."""
+        return LogDensity.independent([parameter.prior for parameter in self.free if parameter.prior])
+
+    def data_likelihood(self) -> LogLikelihood:
+        """The likelihood: it stays as it is when coordinates change; NaN where the forward model has no answer."""
+        return LogLikelihood(self._likelihood.total)
+
+    # -- prior draws, checks, sampling -------------------------------------------------------------------------------
+
+    def draw_prior(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Draw parameter vectors from the prior, shape ``(count, D)``, SI."""
+        return np.stack([p.prior.draw(rng, count) for p in self.free if p.prior], axis=-1)
+
+    def prior_medians(self) -> FloatArray:
+        """Prior median of each free parameter, shape ``(D,)``, SI."""
+        return np.array([p.prior.median for p in self.free if p.prior], dtype=float)
+
+    def simulate(
+        self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
+    ) -> FloatArray:
+        """Draw data of the size of the observed ones for each parameter vector, noise included; ``(M,)`` or ``(B, M)``.
+
+        Group effects are drawn anew, for other people and liquids, unless ``effects`` ``(B, G)`` are given.
+        """
+        batch, single = self._batch(theta)
+        return unbatch(self._likelihood.draw(batch, rng, effects), single)
+
+    def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
+        """Draw the effects of all levels of all groups given parameters and data, shape ``(B, G)``.
+
+        Raises :class:`InputError` if the model has no groups.
+        """
+        batch, _ = self._batch(theta)
+        return self._likelihood.draw_effects(batch, rng)
+
+    def noise_width(self, theta: FloatArray) -> FloatArray:
+        """Width of the noise of each datum at one parameter vector ``(D,)``, shape ``(M,)``.
+
+        In the unit of the observable; for logarithmic noise families the width of its ln. Group effects are not in it.
+        """
+        batch, _ = self._batch(theta)
+        return self._likelihood.width(batch)[0]
+
+    def independent_scatter(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
+        """Changes of what scatters as numbers that scatter independently, with width 1.
+
+        Parameters
+        ----------
+        theta : one parameter vector ``(D,)``, SI
+        changes : of the data, on the scale on which they scatter, shape ``(B, M)``
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, M + G)`` with G effects of groups: the inner products are those of the changes with the inverse of the
+            covariance of the data between them.
+        """
+        return self._likelihood.independent(theta, changes)
+
+    @property
+    def noise_is_logarithmic(self) -> NDArray[np.bool_]:
+        """Whether it is ln of a datum that scatters, for each datum, shape ``(M,)``."""
+        return np.repeat([o.noise.logarithmic for o in self.observations], self.conditions.n_rows)
+
+    @property
+    def costly(self) -> bool:
+        """Whether a likelihood takes so long that fewer walkers are better: a costly forward model, or very many rows."""
+        return self.forward.costly or self.conditions.n_rows >= MANY_ROWS
+
+    @cached_property
+    def _likelihood(self) -> Likelihood:
+        return Likelihood(self)
