@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -26,7 +26,7 @@ class ParameterSpec:
     by, level : what the parameter differs by (a grouping column, the observables, …) and the level it is for; otherwise None
     value : SI value of a fixed parameter, else None
     prior : prior of a free parameter in SI, else None
-    prior_text : the prior as it was written
+    entry : value or prior as it was written, such as ``{"lognormal": ["15 MPa", 0.5]}``; None if nobody wrote it
     source : where value or prior come from, in a sentence
     """
 
@@ -36,13 +36,21 @@ class ParameterSpec:
     level: str | None
     value: float | None
     prior: Prior | None
-    prior_text: str
-    source: str
+    entry: Mapping[str, Any] | None = None
+    source: str = ""
 
     @property
     def label(self) -> str:
         """``name`` or ``name[level]``."""
         return self.name if self.level is None else f"{self.name}[{self.level}]"
+
+    @property
+    def prior_text(self) -> str:
+        """Value or prior as it was written: ``lognormal(15 MPa, 0.5)``, ``fixed at 20 um``."""
+        if self.entry is None:
+            return ""
+        ((key, written),) = self.entry.items()
+        return f"fixed at {_as_written(written)}" if key == "fixed" else f"{key}({_as_written(written)})"
 
 
 def parse_parameter(
@@ -92,14 +100,10 @@ def parse_parameter(
         )
     key = keys[0]
     if key == "fixed":
-        value = parse_value(quantity, entry["fixed"], where, unit)
-        return ParameterSpec(
-            quantity.name, unit, by, level, value, None, f"fixed at {_as_written(entry[key])}", source
-        )
-    prior = _parse_prior(quantity, key, entry[key], f"{where}.{key}", unit)
-    return ParameterSpec(
-        quantity.name, unit, by, level, None, prior, f"{key}({_as_written(entry[key])})", source
-    )
+        value, prior = parse_value(quantity, entry["fixed"], where, unit), None
+    else:
+        value, prior = None, _parse_prior(quantity, key, entry[key], f"{where}.{key}", unit)
+    return ParameterSpec(quantity.name, unit, by, level, value, prior, {key: entry[key]}, source)
 
 
 def parse_levels(

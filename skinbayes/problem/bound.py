@@ -213,7 +213,7 @@ class BoundModel:
     def profiles(self) -> tuple[Profile, ...]:
         """Curves that the forward model offers for the inputs of this problem."""
         columns = set(self.conditions.values)
-        given = {entry.name for entry in self._plan} | columns
+        given = {entry.name for entry in self.plan} | columns
         return tuple(
             profile
             for profile in self.model.profiles
@@ -236,7 +236,7 @@ class BoundModel:
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
         """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""
         rows = conditions or self.conditions
-        plan = self._plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
+        plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
         values = {entry.name: entry.values(theta) for entry in plan if entry.name not in rows.values}
         values |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
@@ -244,7 +244,7 @@ class BoundModel:
     @cached_property
     def alike(self) -> DistinctRows | None:
         """Rows of the data that the forward model need not tell apart; None if all differ."""
-        return distinct_rows(self._plan, self.conditions, self.tables, self.input_spread)
+        return distinct_rows(self.plan, self.conditions, self.tables, self.input_spread)
 
     def evaluate(
         self,
@@ -272,7 +272,8 @@ class BoundModel:
     # -- inner parts -------------------------------------------------------------------------------------------------
 
     @cached_property
-    def _plan(self) -> tuple[InputPlan, ...]:
+    def plan(self) -> tuple[InputPlan, ...]:
+        """Where each input comes from."""
         return plan_inputs(self.fixed, self.free, self.conditions)
 
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:

@@ -18,7 +18,7 @@ RESERVED_NAMES = ("chain", "draw", "row")
 
 
 def check_names(
-    spec: ModelSpec, forward: ForwardModel, parameters: list[ParameterSpec], conditions: Conditions
+    spec: ModelSpec, forward: ForwardModel, parameters: Sequence[ParameterSpec], conditions: Conditions
 ) -> None:
     """Refuse parameters that the forward model does not take, or that the data give as well."""
     known = forward.input_names()
@@ -84,7 +84,7 @@ def check_scatter(spec: ModelSpec, observations: Sequence[Observation]) -> None:
 def check_derived(
     spec: ModelSpec,
     forward: ForwardModel,
-    parameters: list[ParameterSpec],
+    parameters: Sequence[ParameterSpec],
     conditions: Conditions,
     whole_data: bool,
 ) -> None:

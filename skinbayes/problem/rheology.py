@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import find_dataset, load_dataset
+from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.forward import FlowCurve, ForwardModel
 from skinbayes.problem.inputs import Conditions
@@ -16,8 +16,12 @@ REPLACED = "viscosity"
 """Input that flow curves stand for."""
 
 
-def load_flow_curves(spec: ModelSpec, forward: ForwardModel) -> dict[str, FlowCurve]:
+def load_flow_curves(
+    spec: ModelSpec, forward: ForwardModel, dataset: Dataset | None = None
+) -> dict[str, FlowCurve]:
     """Flow curves of the ``[rheology]`` block by level of its grouping column; empty without such a block.
+
+    They come from the data set that is given, or else from the one that the model names.
 
     Raises
     ------
@@ -30,11 +34,12 @@ def load_flow_curves(spec: ModelSpec, forward: ForwardModel) -> dict[str, FlowCu
         raise InputError(
             f"{spec.path}: rheology: the forward model '{forward.name}' has no use for flow curves"
         )
-    try:
-        find_dataset(spec.rheology)
-    except InputError as error:
-        raise InputError(f"{spec.path}: rheology: {error}") from None
-    dataset = load_dataset(spec.rheology)
+    if dataset is None:
+        try:
+            find_dataset(spec.rheology)
+        except InputError as error:
+            raise InputError(f"{spec.path}: rheology: {error}") from None
+        dataset = load_dataset(spec.rheology)
     for column in (spec.rheology_by, "shear_rate", REPLACED):
         if column not in dataset.columns:
             raise InputError(

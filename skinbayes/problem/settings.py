@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from unicodedata import normalize
 
 from skinbayes.errors import InputError
@@ -61,22 +62,17 @@ def apply_settings(
 def _replace(
     parameters: list[ParameterSpec], name: str, level: str, value: float, key: str, text: str
 ) -> list[ParameterSpec]:
-    unit = QUANTITIES[name].unit
+    new = ParameterSpec(
+        name, QUANTITIES[name].unit, None, None, value, None, {"fixed": text}, "set by the user"
+    )
     if not level:
-        kept = [p for p in parameters if p.name != name]
-        return [
-            *kept,
-            ParameterSpec(name, unit, None, None, value, None, f"set to {text}", "set by the user"),
-        ]
+        return [*(p for p in parameters if p.name != name), new]
     levels = [p.level for p in parameters if p.name == name]
     if level not in levels:
         found = ", ".join(str(item) for item in levels if item) or "no levels"
         raise InputError(f"--set {key}: {name} has {found}; '{level}' is not one of them")
     return [
-        ParameterSpec(name, unit, p.by, level, value, None, f"set to {text}", "set by the user")
-        if p.name == name and p.level == level
-        else p
-        for p in parameters
+        replace(new, by=p.by, level=level) if p.name == name and p.level == level else p for p in parameters
     ]
 
 

@@ -1,0 +1,63 @@
+"""The rough surface of a problem: a named one, a measured spectrum, or parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from skinbayes.errors import InputError
+from skinbayes.files.modelfile import ModelSpec
+from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.forward import ROUGHNESS_INPUTS
+from skinbayes.roughness import TabulatedSpectrum, named_surface
+from skinbayes.vocabulary import QUANTITIES
+
+
+@dataclass(frozen=True)
+class Surface:
+    """What is known about a surface.
+
+    Attributes
+    ----------
+    spectrum : measured spectrum, or None
+    file : its file, or None
+    parameters : the five roughness parameters of a named surface; empty otherwise
+    """
+
+    spectrum: TabulatedSpectrum | None = None
+    file: Path | None = None
+    parameters: tuple[ParameterSpec, ...] = ()
+
+
+def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Surface:
+    """The surface that is given (its name, the path of a spectrum, or a spectrum), or else that of the model file.
+
+    Raises :class:`InputError` for a name that is not known or a file that holds no spectrum.
+    """
+    if isinstance(given, TabulatedSpectrum):
+        return Surface(given)
+    name, file = spec.surface_name, spec.surface_file
+    if given is not None:
+        is_file = given.endswith(".csv") or Path(given).exists()
+        name, file = (None, Path(given)) if is_file else (given, None)
+    if file is not None:
+        from skinbayes.files.spectrum import read_spectrum
+
+        return Surface(read_spectrum(file), file.resolve())
+    if name is None:
+        return Surface()
+    try:
+        named = named_surface(name)
+    except InputError as error:
+        raise InputError(f"{spec.path}: surface.name: {error}") from None
+    return Surface(
+        parameters=tuple(
+            ParameterSpec(
+                key, QUANTITIES[key].unit, None, None, float(np.asarray(getattr(named, key))), None,
+                source=f"surface {name}",
+            )
+            for key in ROUGHNESS_INPUTS
+        )
+    )  # fmt: skip
