@@ -14,9 +14,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from skinbayes.version import __version__
 
-__all__ = ["Dataset", "Fit", "InputError", "NoiseFamily", "Problem", "__version__", "compare", "load_dataset", "load_fit",
+__all__ = ["Dataset", "Fit", "InputError", "NoiseFamily", "Problem", "__version__", "build_problem", "compare", "load_dataset", "load_fit",
            "load_problem", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
-    from skinbayes.problem import Problem, load_problem
+    from skinbayes.problem import Problem, build_problem, load_problem
     from skinbayes.statistics import NoiseFamily, register_noise
     from skinbayes.vocabulary import register_quantity
 
@@ -33,6 +33,7 @@ _HOME = {
     "Fit": "skinbayes.fit",
     "InputError": "skinbayes.errors",
     "Problem": "skinbayes.problem",
+    "build_problem": "skinbayes.problem",
     "compare": "skinbayes.comparison",
     "load_dataset": "skinbayes.files.dataset",
     "load_fit": "skinbayes.fit",

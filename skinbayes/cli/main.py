@@ -13,7 +13,6 @@ from typing import Any
 
 import click
 
-from skinbayes import __version__
 from skinbayes.cli.catalogue import datasets, models, show
 from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
@@ -26,6 +25,7 @@ from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
 from skinbayes.cli.template import template
 from skinbayes.errors import NO_SPACE, InputError, MachineError, RepairWarning
+from skinbayes.version import __version__
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 """Set to 1 unless the user set them: the matrices are small, and threads of linear algebra stand in the way of the worker

@@ -247,3 +247,7 @@ def find_dataset(
         f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file; shipped are "
         f"{', '.join(shipped)}.{_suggestions(name_or_path, shipped)}"
     )
+
+
+def as_dataset(value, *, name="data"):
+    raise NotImplementedError

@@ -8,33 +8,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.pixel_axes import PixelAxes
+from skinbayes.files.digitised_csv import read_pairs
+from skinbayes.files.digitised_project import read_project
+from skinbayes.files.digitised_set import DigitisedSet
 from skinbayes.files.reading import open_file
 from skinbayes.files.table import quoted
 from skinbayes.vocabulary import suggestions
 
 LARGEST_EXPORT = 100_000_000
 """Bytes of an export; an archive holds the picture, too."""
-
-
-@dataclass(frozen=True, eq=False)
-class DigitisedSet:
-    """One data set of an export.
-
-    Attributes
-    ----------
-    name : as in the export
-    values : abscissa and ordinate of each point in the units of the axes, shape ``(N, 2)``
-    places : where in the file each point stands, for messages
-    axes : calibration of the axes, or None for a CSV, which has none
-    """
-
-    name: str
-    values: FloatArray
-    places: tuple[str, ...]
-    axes: PixelAxes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,10 +112,6 @@ def read_digitised(path: str | Path) -> DigitisedFile:
     if not start.strip():
         raise InputError(f"{path}: the file is empty; expected an export of WebPlotDigitizer")
     if archive or start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
-        from skinbayes.files.digitised_project import read_project
-
         kind, sets, left_out = read_project(path, archive=archive)
         return DigitisedFile(path, kind, digest, sets, left_out)
-    from skinbayes.files.digitised_csv import read_pairs
-
     return DigitisedFile(path, "CSV of WebPlotDigitizer", digest, read_pairs(path))

@@ -12,8 +12,8 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.digitised import DigitisedSet
 from skinbayes.files.digitised_axes import AxisMeaning
+from skinbayes.files.digitised_set import DigitisedSet
 from skinbayes.files.table import quoted
 from skinbayes.units import convert_array, format_quantity, parse_quantity
 from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, suggestions

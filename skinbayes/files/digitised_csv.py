@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.digitised import DigitisedSet
+from skinbayes.files.digitised_set import DigitisedSet
 from skinbayes.files.table import MAX_ROWS, Problems, quoted, text_lines
 
 _POINT = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")

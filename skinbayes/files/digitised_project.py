@@ -11,8 +11,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from skinbayes.errors import InputError
-from skinbayes.files.digitised import DigitisedSet
 from skinbayes.files.digitised_schema import AxesBlock, PointBlock, ProjectBlock, SeriesBlock
+from skinbayes.files.digitised_set import DigitisedSet
 from skinbayes.files.pixel_axes import PixelAxes
 from skinbayes.files.reading import read_file
 from skinbayes.files.table import quoted

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -106,6 +107,23 @@ def load_model(name: str | Path) -> ModelSpec:
     """
     path = find_model(name)
     content, text = read_toml(path)
+    return read_model(content, path, text)
+
+
+def read_model(content: Mapping[str, Any], path: Path, text: str) -> ModelSpec:
+    """Validate the content of a model file.
+
+    Parameters
+    ----------
+    content : tables and values, as TOML has them
+    path : the file, or a name that stands for it in messages
+    text : the file as it stands, in which messages count lines
+
+    Raises
+    ------
+    InputError
+        as :func:`load_model`
+    """
     try:
         block = ModelBlock.model_validate(content)
     except ValidationError as error:

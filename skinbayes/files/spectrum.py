@@ -118,3 +118,10 @@ def _check_increasing(table: Table, position: int, values: FloatArray, unit: str
             f", column 'wavevector': found {cells[row + 1][:30]} {unit} after {cells[row][:30]} {unit}; "
             "expected wavevectors that increase from row to row",
         )
+
+
+def spectrum_text(spectrum: TabulatedSpectrum) -> str:
+    """A spectrum as the CSV that `read_spectrum` reads, every number with all its digits."""
+    power = spectrum.node_power * np.asarray(spectrum.scale)
+    rows = (f"{q!r},{c!r}" for q, c in zip(spectrum.wavevector.tolist(), power.tolist(), strict=True))
+    return "\n".join(("wavevector [1/m],power_spectrum_2d [m^4]", *rows, ""))

@@ -1,10 +1,10 @@
-"""Reading TOML with errors that name the file and the line."""
+"""TOML: reading it with errors that name the file and the line, and writing it."""
 
 from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
@@ -208,3 +208,20 @@ def explain(error: ValidationError, path: Path, text: str, known: Collection[str
 
 def _quoted(key: str) -> str:
     return "[\"']?" + re.escape(key) + "[\"']?"
+
+
+def toml_text(content: Mapping[str, Any]) -> str:
+    """Tables and values as the text of a TOML file.
+
+    >>> print(toml_text({"title": "A ball", "parameters": {"yield_stress": {"fixed": "inf Pa"}}}), end="")
+    title = "A ball"
+    <BLANKLINE>
+    [parameters.yield_stress]
+    fixed = "inf Pa"
+    """
+    import tomlkit
+
+    document = tomlkit.item(content)
+    if "\n" in content.get("description", ""):
+        document["description"] = tomlkit.string(f"\n{content['description']}\n", multiline=True)
+    return tomlkit.dumps(document)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes import __version__
 from skinbayes.fit.bibliography import (
     ARVIZ,
     CAPILLARY,
@@ -25,6 +24,7 @@ from skinbayes.fit.bibliography import (
     Reference,
     key_of,
 )
+from skinbayes.version import __version__
 
 if TYPE_CHECKING:
     from skinbayes.files.dataset import Dataset

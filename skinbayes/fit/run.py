@@ -219,7 +219,7 @@ def _versions() -> dict[str, str]:
         try:
             found[package] = version(package)
         except PackageNotFoundError:
-            from skinbayes import __version__
+            from skinbayes.version import __version__
 
             if package == "skinbayes":
                 found[package] = __version__

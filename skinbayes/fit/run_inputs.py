@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import PARTIAL, write_atomically
 from skinbayes.errors import InputError, RepairWarning
+from skinbayes.files.locate import shipped_names
+from skinbayes.files.spectrum import spectrum_text
 from skinbayes.fit.manifest import RUN, STEPS, YARDSTICK_MODELS, Manifest, read_manifest, write_manifest
 from skinbayes.fit.run_lock import LOCK
+from skinbayes.problem.rheology import flow_curves_text
 from skinbayes.sampling.store import stored_fingerprint
 from skinbayes.sealed import DamagedFile, put_aside
 
@@ -105,29 +108,42 @@ def write_inputs(directory: Path, problem: Problem) -> Manifest:
 
     What stands there already and differs is put aside and named in a :class:`RepairWarning`.
     """
-    copies: dict[str, Path] = {"model.toml": problem.spec.path}
+    copies: dict[str, Path] = {}
+    texts = {"model.toml": problem.spec.text}
     note: dict[str, Any] = {"data": None, "surface": None, "rheology": None, "rows": None}
     settings = {name: text for name, text in problem.settings.items() if name != "surface"}
-    if "surface" in problem.settings and problem.surface_file is None:
+    if "surface" in problem.settings and problem.spec.surface_file is None:
         settings["surface"] = problem.settings["surface"]
     if problem.dataset is not None:
         source = Path(problem.dataset.path)
         note["data"] = f"data/{source.name}"
-        copies[note["data"]] = source
+        if source.is_file():
+            copies[note["data"]] = source
+        else:  # a data frame: its selected rows
+            note["data"] = "data/data.csv"
+            texts[note["data"]] = problem.dataset.to_csv()
         note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
         provenance = source.with_name("provenance.toml")
         if source.name == "data.csv" and provenance.exists():
             copies[f"data/{provenance.name}"] = provenance
             note["data"] = "data"
-    if problem.spec.rheology is not None and Path(problem.spec.rheology).is_file():
-        copies["rheology.csv"] = Path(problem.spec.rheology)
+    rheology, by, spectrum = problem.spec.rheology, problem.spec.rheology_by, problem.tables.spectrum
+    if rheology is not None and by is not None and rheology not in shipped_names("datasets"):
         note["rheology"] = "rheology.csv"
-    if problem.surface_file is not None:
-        copies["spectrum.csv"] = problem.surface_file
+        if Path(rheology).is_file():
+            copies["rheology.csv"] = Path(rheology)
+        else:
+            texts["rheology.csv"] = flow_curves_text(problem.flow_curves, by)
+    if spectrum is not None:
         note["surface"] = "spectrum.csv"
+        if problem.spec.surface_file is not None:
+            copies["spectrum.csv"] = problem.spec.surface_file
+        else:
+            texts["spectrum.csv"] = spectrum_text(spectrum)
     copies |= {f"{YARDSTICK_MODELS}/{path.name}": path for path in own_yardsticks(problem)}
     # read first: the user may point at the copies of an earlier run in this very directory
     contents = {name: source.read_bytes() for name, source in copies.items()}
+    contents |= {name: text.encode() for name, text in texts.items()}
     files = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
     manifest = Manifest(problem.name, problem.fingerprint, **note, settings=settings, files=files)
     # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.lubrication import FlowCurve
-from skinbayes.roughness import PowerSpectrum
+from skinbayes.roughness import TabulatedSpectrum
 
 ROUGHNESS_INPUTS = ("rms_height", "hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
 """Inputs of a self-affine spectrum; a named surface supplies all of them."""
@@ -36,7 +36,7 @@ class Tables:
     flow_curves : viscosity against shear rate of the liquid of each row, or None; rows of one liquid share an object
     """
 
-    spectrum: PowerSpectrum | None = None
+    spectrum: TabulatedSpectrum | None = None
     flow_curves: tuple[FlowCurve, ...] | None = None
 
     def at_row(self, row: int) -> Tables:

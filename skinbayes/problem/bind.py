@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -72,6 +72,7 @@ def bind(
         spec, forward, settings or {}, () if asked is None else asked.values
     )
     found = choose_surface(spec, chosen or surface)
+    spec = replace(spec, surface_name=found.name, surface_file=found.file)
     curves = load_flow_curves(spec, forward, rheology)
     taken |= {REPLACED} if curves else set()
     rows = _rows(spec, forward, data, taken) if asked is None else _Rows(asked.without(taken))
@@ -80,7 +81,7 @@ def bind(
     check_derived(
         spec, forward, parameters, rows.conditions, whole_data=rows.dataset is not None and not other_data
     )
-    problem = _problem(spec, forward, parameters, found, rows, curves, dict(settings or {}))
+    problem = _problem(spec, forward, parameters, found.spectrum, rows, curves, dict(settings or {}))
     _check_medians(problem)
     return problem
 
@@ -147,7 +148,7 @@ def _problem(
     spec: ModelSpec,
     forward: ForwardModel,
     parameters: tuple[ParameterSpec, ...],
-    surface: Surface,
+    spectrum: TabulatedSpectrum | None,
     rows: _Rows,
     curves: Mapping[str, FlowCurve],
     settings: Mapping[str, str],
@@ -165,10 +166,9 @@ def _problem(
         if rows.dataset is None
         else relative_input_spread(spec, rows.dataset, rows.conditions),
         groups=crossed_groups(spec, rows.conditions) if rows.observations else None,
-        tables=Tables(surface.spectrum, flow_curves),
+        tables=Tables(spectrum, flow_curves),
         flow_curves=curves,
         settings=settings,
-        surface_file=surface.file,
     )
     try:
         _ = problem.plan

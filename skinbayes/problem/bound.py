@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +48,6 @@ class BoundModel:
     tables : tabulated roughness spectrum and flow curves of the rows, where there are any
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
     settings : values set over the model file, as given
-    surface_file : file of the tabulated spectrum, or None
     """
 
     spec: ModelSpec
@@ -64,7 +62,6 @@ class BoundModel:
     tables: Tables
     flow_curves: Mapping[str, FlowCurve]
     settings: Mapping[str, str] = field(default_factory=dict)
-    surface_file: Path | None = None
 
     @property
     def name(self) -> str:

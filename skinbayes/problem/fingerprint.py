@@ -45,7 +45,7 @@ def digest_model(
     data_digest: str,
 ) -> str:
     """Digest of everything the posterior depends on; comments and titles do not enter."""
-    from skinbayes import __version__
+    from skinbayes.version import __version__
 
     table = tables.spectrum
     return _digest(

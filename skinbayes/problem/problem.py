@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from skinbayes.problem.check import CheckReport, check_problem
+from skinbayes.problem.model_text import model_files, write_model
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.problem.target import PosteriorTarget
 
@@ -31,3 +33,26 @@ class Problem(StatisticalModel):
     def target(self) -> PosteriorTarget:
         """The posterior as samplers see it: on the whole real space, with Jacobian."""
         return PosteriorTarget(self)
+
+    def to_toml(self, path: str | Path | None = None) -> str:
+        """The model file of this problem.
+
+        Parameters
+        ----------
+        path : where to write it; data, spectrum and flow curves that are in no file are written beside it. Without a path
+            nothing is written
+
+        Returns
+        -------
+        str
+            the text; :func:`skinbayes.load_problem` makes the same problem of the file
+
+        Raises
+        ------
+        InputError
+            A file of that name is there already, or a prior that no model file can state.
+        """
+        if path is None:
+            file = Path(f"{self.name}.toml")
+            return model_files(self, file)[file]
+        return write_model(self, Path(path))

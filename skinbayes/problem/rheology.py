@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
+from skinbayes.files.dataset import Dataset, as_dataset, find_dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.forward import FlowCurve, ForwardModel
 from skinbayes.problem.inputs import Conditions
@@ -78,3 +78,15 @@ def flow_curves_of(
             f"{place}: no flow curve of {column} '{unknown[0]}'; there are {', '.join(sorted(curves))}"
         )
     return tuple(curves[level] for level in levels)
+
+
+def flow_curves_text(curves: Mapping[str, FlowCurve], column: str) -> str:
+    """Flow curves as a CSV that :func:`load_flow_curves` reads."""
+    points = [
+        (level, rate, viscosity)
+        for level, curve in curves.items()
+        for rate, viscosity in zip(curve.shear_rate, curve.measured_viscosity, strict=True)
+    ]
+    levels, rates, viscosities = zip(*points, strict=True)
+    columns = {column: list(levels), "shear_rate": np.array(rates), "viscosity": np.array(viscosities)}
+    return as_dataset(columns, name="flow curves").to_csv()

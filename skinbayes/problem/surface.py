@@ -21,11 +21,13 @@ class Surface:
 
     Attributes
     ----------
+    name : of a named surface, or None
     spectrum : measured spectrum, or None
     file : its file, or None
     parameters : the five roughness parameters of a named surface; empty otherwise
     """
 
+    name: str | None = None
     spectrum: TabulatedSpectrum | None = None
     file: Path | None = None
     parameters: tuple[ParameterSpec, ...] = ()
@@ -37,7 +39,7 @@ def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Su
     Raises :class:`InputError` for a name that is not known or a file that holds no spectrum.
     """
     if isinstance(given, TabulatedSpectrum):
-        return Surface(given)
+        return Surface(spectrum=given)
     name, file = spec.surface_name, spec.surface_file
     if given is not None:
         is_file = given.endswith(".csv") or Path(given).exists()
@@ -45,7 +47,7 @@ def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Su
     if file is not None:
         from skinbayes.files.spectrum import read_spectrum
 
-        return Surface(read_spectrum(file), file.resolve())
+        return Surface(spectrum=read_spectrum(file), file=file.resolve())
     if name is None:
         return Surface()
     try:
@@ -53,6 +55,7 @@ def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Su
     except InputError as error:
         raise InputError(f"{spec.path}: surface.name: {error}") from None
     return Surface(
+        name=name,
         parameters=tuple(
             ParameterSpec(
                 key, QUANTITIES[key].unit, None, None, float(np.asarray(getattr(named, key))), None,

@@ -20,6 +20,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "atomic": set(),
     "sealed": set(),
     "synonyms": set(),
+    "version": set(),
     "vocabulary": {"errors", "synonyms"},
     "units": {"errors", "arrays", "vocabulary", "constants"},
     # physics
@@ -35,16 +36,15 @@ MAY_KNOW: dict[str, set[str]] = {
     # where they meet
     "files": {*WORDS, "units", "roughness", "statistics"},
     "forward": {*WORDS, *PHYSICS},
-    "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "skinbayes"},
-    "fit": {*WORDS, *FILES, "units", "statistics", "sampling", "diagnose", "files", "problem", "skinbayes"},
+    "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "version"},
+    "fit": {*WORDS, *FILES, "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
-               "skinbayes"},
-    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
+    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
+    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
     # the shop window names its goods but opens them when asked
-    "skinbayes": {"errors", "vocabulary", "statistics", "files", "problem", "fit", "comparison"},
+    "skinbayes": {"version", "errors", "vocabulary", "statistics", "files", "problem", "fit", "comparison"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
 

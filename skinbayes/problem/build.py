@@ -1,0 +1,192 @@
+"""Problems from values of Python: no file is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from skinbayes.errors import InputError
+from skinbayes.files.dataset import Dataset, as_dataset
+from skinbayes.files.locate import shipped_names
+from skinbayes.files.modelfile import read_model
+from skinbayes.files.toml_text import toml_text
+from skinbayes.files.written import written_parameter, written_value
+from skinbayes.forward import ForwardModel, forward_model
+from skinbayes.problem.bind import bind
+from skinbayes.problem.problem import Problem
+from skinbayes.roughness import SURFACES, TabulatedSpectrum
+from skinbayes.statistics.noise_families import NOISE_FAMILIES
+from skinbayes.vocabulary import QUANTITIES
+
+
+def build_problem(
+    forward: str | ForwardModel,
+    data: Any = None,
+    *,
+    parameters: Mapping[str, Any],
+    noise: Mapping[str, Any] | None = None,
+    observable: str | Sequence[str] | None = None,
+    rows: Mapping[str, Sequence[str]] | None = None,
+    spread: str | None = None,
+    input_spread: str | None = None,
+    surface: str | Path | TabulatedSpectrum | None = None,
+    groups: Mapping[str, Any] | None = None,
+    covariates: Mapping[str, Mapping[str, Any]] | None = None,
+    rheology: Mapping[str, Any] | None = None,
+    derived: Mapping[str, Mapping[str, Any]] | None = None,
+    conditions: Mapping[str, Any] | None = None,
+    name: str = "my-model",
+    title: str = "",
+    description: str = "",
+) -> Problem:
+    """Make a problem of values; the arguments are the tables of a model file.
+
+    Every number is one in SI, a quantity of `pint`, or text with a unit. :meth:`Problem.to_toml` writes the model file.
+
+    Parameters
+    ----------
+    forward : a forward model, or the name of one
+    data : what was measured: a pandas data frame or a mapping of arrays with headers as a CSV has them, a
+        :class:`~skinbayes.Dataset`, the name of a shipped data set, or the path of a CSV; None for a model that only predicts
+    parameters : name to a fixed value, or to a prior such as ``{"lognormal": ["15 MPa", 0.5], "source": "…"}``, or to one of
+        these for each level: ``{"by": "state", "dry": …, "wet": …}``
+    noise : its ``family`` and parameters; with several observables one such mapping for each
+    observable : column (or columns) that the model explains; the first of the forward model if not given
+    rows : label column to the labels of the rows that are used
+    spread, input_spread : ``"use"`` or ``"ignore"`` the columns ``…_standard_deviation`` of observables, and of inputs
+    surface : a named surface, the path of a spectrum, or a spectrum
+    groups : label column to the prior of the scale of the effects that its rows share
+    covariates : name to ``column``, ``acts_on``, ``reference`` and ``exponent``
+    rheology : ``by`` (a label column) and ``data``, flow curves of the liquids, in any form that data have
+    derived : name to ``product`` and, if wanted, ``rows``, ``symbol``, ``meaning``
+    conditions : inputs at which a model without data is evaluated, each a list of values
+    name, title, description : what the problem is called, and what it is about
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    InputError
+        Anything that does not fit together; the message names the argument and key.
+
+    Examples
+    --------
+    >>> problem = build_problem(
+    ...     "friction-constant",
+    ...     {"friction_coefficient": [0.31, 0.27, 0.33]},
+    ...     parameters={"typical_friction_coefficient": {"lognormal": [0.5, 1.0], "source": "weak on purpose"}},
+    ...     noise={"family": "lognormal", "noise_scale": {"half_normal": 0.3}},
+    ... )
+    >>> problem.names, problem.dimension
+    (('typical_friction_coefficient', 'noise_scale'), 2)
+    """
+    model = forward_model(forward) if isinstance(forward, str) else forward
+    observables = _observables(model, observable)
+    several = not (observable is None or isinstance(observable, str))
+    dataset = None if data is None else as_dataset(data, name=f"{name}-data")
+    content: dict[str, Any] = {
+        "format": 1,
+        "title": title or name,
+        "description": description,
+        "forward": model.name,
+    }
+    if dataset is not None:
+        content["data"] = _without_none({
+            **_source(data, dataset), "observables" if several else "observable": observables if several else observables[0],
+            "rows": None if rows is None else {key: list(levels) for key, levels in rows.items()},
+            "spread": spread, "input_spread": input_spread,
+        })  # fmt: skip
+    if isinstance(surface, TabulatedSpectrum):
+        content["surface"] = {"file": f"{name}-spectrum.csv"}
+    elif surface is not None:
+        content["surface"] = {"name" if str(surface) in SURFACES else "file": str(surface)}
+    content["parameters"] = {
+        key: written_parameter(entry, _unit(key), f"{name}: parameters.{key}")
+        for key, entry in parameters.items()
+    }
+    if noise is not None:
+        places = {one: noise.get(one, {}) for one in observables} if several else {observables[0]: noise}
+        blocks = {one: _noise(one, block, f"{name}: noise") for one, block in places.items()}
+        content["noise"] = blocks if several else blocks[observables[0]]
+    unit = _noise_unit(observables[0], content.get("noise", {})) if observables and not several else "1"
+    content["groups"] = {
+        column: {"scale": written_parameter(_scale(entry), unit, f"{name}: groups.{column}")}
+        for column, entry in (groups or {}).items()
+    }
+    content["covariates"] = {
+        key: {
+            **block,
+            "reference": written_value(block.get("reference"), _unit(str(block.get("column"))), f"{name}: covariates.{key}"),
+            "exponent": written_parameter(block.get("exponent"), "1", f"{name}: covariates.{key}"),
+        }
+        for key, block in (covariates or {}).items()
+    }  # fmt: skip
+    curves = None
+    if rheology is not None:
+        given = rheology.get("data")
+        curves = as_dataset(given, name=f"{name}-rheology")
+        content["rheology"] = {**_source(given, curves), "by": rheology.get("by")}
+    content["derived"] = {key: dict(block) for key, block in (derived or {}).items()}
+    content["conditions"] = {
+        key: {"values": [written_value(v, _unit(key), f"{name}: conditions.{key}") for v in np.atleast_1d(values).tolist()]}
+        for key, values in (conditions or {}).items()
+    }  # fmt: skip
+    content = {key: value for key, value in content.items() if value != {}} | {
+        "parameters": content["parameters"]
+    }
+    spec = replace(read_model(content, Path(name), ""), text=toml_text(content))
+    if dataset is not None and rows:
+        try:
+            dataset = dataset.select(rows)
+        except InputError as error:
+            raise InputError(f"{name}: rows: {error}") from None
+    spectrum = surface if isinstance(surface, TabulatedSpectrum) else None
+    return bind(spec, dataset, forward=model, surface=spectrum, rheology=curves)
+
+
+def _observables(model: ForwardModel, given: str | Sequence[str] | None) -> list[str]:
+    if given is None:
+        return list(model.observables[:1])
+    return [given] if isinstance(given, str) else list(given)
+
+
+def _source(given: Any, dataset: Dataset) -> dict[str, str]:
+    """Where a model file finds a data set."""
+    if isinstance(given, str) and given in shipped_names("datasets"):
+        return {"dataset": given}
+    return {"file": str(dataset.path.resolve() if dataset.path.exists() else dataset.path)}
+
+
+def _unit(name: str) -> str:
+    """SI unit of a quantity; names that are not known are refused where the content is read."""
+    return QUANTITIES[name].unit if name in QUANTITIES else "1"
+
+
+def _noise(observable: str, block: Mapping[str, Any], where: str) -> dict[str, Any]:
+    unit = _noise_unit(observable, block)
+    return {
+        key: value
+        if key == "family"
+        else written_parameter(value, unit if key == "noise_scale" else _unit(key), f"{where}.{key}")
+        for key, value in block.items()
+    }
+
+
+def _noise_unit(observable: str, block: Mapping[str, Any]) -> str:
+    family = NOISE_FAMILIES.get(str(block.get("family")))
+    return _unit(observable) if family is not None and not family.relative else "1"
+
+
+def _scale(entry: Any) -> Any:
+    """The prior of a scale, given as it is or under ``scale`` as in a model file."""
+    return entry["scale"] if isinstance(entry, Mapping) and set(entry) == {"scale"} else entry
+
+
+def _without_none(block: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in block.items() if value is not None}
