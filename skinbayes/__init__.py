@@ -16,21 +16,24 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.version import __version__
 
-__all__ = ["Dataset", "Fit", "InputError", "NoiseFamily", "Problem", "__version__", "build_problem", "compare", "load_dataset", "load_fit",
-           "load_problem", "register_noise", "register_quantity", "sample"]  # fmt: skip
+__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "NoiseFamily", "Problem", "Quantity", "__version__", "build_problem",
+           "compare", "load_dataset", "load_fit", "load_problem", "register_forward_model", "register_noise", "register_quantity",
+           "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
+    from skinbayes.forward import ForwardModel, register_forward_model
     from skinbayes.problem import Problem, build_problem, load_problem
     from skinbayes.statistics import NoiseFamily, register_noise
-    from skinbayes.vocabulary import register_quantity
+    from skinbayes.vocabulary import Quantity, register_quantity
 
 _HOME = {
     "Dataset": "skinbayes.files.dataset",
     "Fit": "skinbayes.fit",
+    "ForwardModel": "skinbayes.forward",
     "InputError": "skinbayes.errors",
     "Problem": "skinbayes.problem",
     "build_problem": "skinbayes.problem",
@@ -39,6 +42,8 @@ _HOME = {
     "load_fit": "skinbayes.fit",
     "load_problem": "skinbayes.problem",
     "NoiseFamily": "skinbayes.statistics",
+    "Quantity": "skinbayes.vocabulary",
+    "register_forward_model": "skinbayes.forward",
     "register_noise": "skinbayes.statistics",
     "register_quantity": "skinbayes.vocabulary",
     "sample": "skinbayes.fit",

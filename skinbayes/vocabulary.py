@@ -279,11 +279,15 @@ def register_quantity(
     '>= 0 kg/m^2'
     >>> del QUANTITIES["sebum_level"]
     """
+    meaning = meaning or name.replace("_", " ")
+    return add_quantity(Quantity(name, symbol, unit, meaning, minimum, maximum, lower_open=False))
+
+
+def add_quantity(quantity: Quantity) -> Quantity:
+    """Make a quantity known, as :func:`register_quantity` does."""
+    name = quantity.name
     if not (name.isidentifier() and name.isascii()):
         raise InputError(f"{name!r} cannot name a quantity; expected letters, digits and underscores")
-    quantity = Quantity(
-        name, symbol, unit, meaning or name.replace("_", " "), minimum, maximum, lower_open=False
-    )
     if name in LABELS or QUANTITIES.get(name, quantity) != quantity:
         raise InputError(f"'{name}' means something else already; give your quantity another name")
     QUANTITIES[name] = quantity

@@ -19,7 +19,7 @@ from skinbayes.errors import InputError
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum
 
-CLOSURES = ("gaussian", "delta")
+CLOSURES = ("gaussian", "sharp")
 """What stands for the gaps that close at one magnification, see `gap_distribution`."""
 
 _CAP = 2.5  # largest u₁ in units of ū
@@ -139,7 +139,7 @@ def gap_distribution(
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
     area_correction: ArrayLike = AREA_CORRECTION,
-    closure: Literal["gaussian", "delta"] = "gaussian",
+    closure: Literal["gaussian", "sharp"] = "gaussian",
 ) -> GapDistribution:
     """Distribution of the gap of rough layered skin pressed against a smooth solid (Sect. 5 of the paper).
 
@@ -159,7 +159,7 @@ def gap_distribution(
     spectrum : power spectrum, C in m^4, scalar or batched
     skin : moduli in Pa, thickness in m; broadcasts with the spectrum
     area_correction : γ of ū and of A(ζ), dimensionless, 0 < γ ≤ 1, batch shape; 1 is plain Persson theory
-    closure : ``"gaussian"``, or ``"delta"`` for all of the gap at u₁ (with the width of the spacing of nodes)
+    closure : ``"gaussian"``, or ``"sharp"`` for all of the gap at u₁ (with the width of the spacing of nodes)
 
     Returns
     -------

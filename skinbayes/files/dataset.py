@@ -19,6 +19,7 @@ from skinbayes.files.columns import LabelArray, read_columns
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
 from skinbayes.files.table import Problems, quoted, read_table
+from skinbayes.plugins import installed_forward_models
 
 DATA_FILE = "data.csv"
 PROVENANCE_FILE = "provenance.toml"
@@ -191,6 +192,7 @@ def load_dataset(name_or_path: str | Path, *, relative_to: Path | None = None) -
     >>> data.labels("state"), data.columns["friction_coefficient"].tolist(), data.units["normal_force"]
     (('dry', 'wet'), [0.3, 1.4], 'N')
     """
+    installed_forward_models()  # whose quantities the columns may be
     key, path, described_in = find_dataset(name_or_path, relative_to=relative_to)
     provenance = None
     if described_in is not None:

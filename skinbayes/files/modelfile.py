@@ -18,6 +18,7 @@ from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, Mode
 from skinbayes.files.noise_block import noise_parameter_names, read_noise
 from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_value
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
+from skinbayes.plugins import installed_forward_models
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
 
 
@@ -31,6 +32,7 @@ class ModelSpec:
     path : the file
     text : the file as it stands
     title, description, forward : as written
+    options : of the forward model, as written
     dataset, rows, observables : the data set (shipped key or path; None if the user brings it), the rows kept, the columns
         explained (empty for a model without data)
     spread, input_spread : whether spread columns of the observables, and of the inputs, are used; None if not said
@@ -53,6 +55,7 @@ class ModelSpec:
     description: str
     forward: str
     parameters: tuple[ParameterSpec, ...]
+    options: dict[str, str] = field(default_factory=dict)
     dataset: str | None = None
     rows: dict[str, tuple[str, ...]] = field(default_factory=dict)
     observables: tuple[str, ...] = ()
@@ -72,6 +75,10 @@ class ModelSpec:
     yardsticks: tuple[str, ...] = ()
 
 
+RETIRED = ("capillary-film", "drying", "drying-glass", "humid-air")
+"""Models of which there was a second file for sharp gaps, called '…-delta'."""
+
+
 def find_model(name: str | Path) -> Path:
     """Return the file of a shipped model, or the given path.
 
@@ -79,6 +86,12 @@ def find_model(name: str | Path) -> Path:
     """
     text = str(name)
     shipped = shipped_names("models")
+    if text.removesuffix("-delta") in RETIRED and text.endswith("-delta"):
+        base = text.removesuffix("-delta")
+        raise InputError(
+            f"the model '{text}' is now an option of '{base}': predict it with 'skinbayes predict {base} --set closure=sharp'; "
+            f"to fit it, write a copy with 'skinbayes new {base} -o mine.toml' and add a table [options] with closure = \"sharp\""
+        )
     if text in shipped:
         return shipped_folder("models") / f"{text}.toml"
     path = Path(text)
@@ -105,6 +118,7 @@ def load_model(name: str | Path) -> ModelSpec:
     InputError
         Anything unknown, missing, of the wrong type, without unit or out of range; names file, line and key.
     """
+    installed_forward_models()  # whose quantities the file may name
     path = find_model(name)
     content, text = read_toml(path)
     return read_model(content, path, text)
@@ -166,6 +180,7 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         title=block.title,
         description=block.description.strip(),
         forward=block.forward,
+        options=block.options,
         parameters=parameters,
         dataset=resolved(data),
         rows={} if data is None else {key: tuple(levels) for key, levels in data.rows.items()},

@@ -137,6 +137,7 @@ class ModelBlock(_Strict):
     title: str
     description: str = ""
     forward: str
+    options: dict[str, str] = Field(default_factory=dict)
     data: DataBlock | None = None
     surface: SurfaceBlock | None = None
     parameters: dict[str, Any]

@@ -221,7 +221,7 @@ def toml_text(content: Mapping[str, Any]) -> str:
     """
     import tomlkit
 
-    document = tomlkit.item(content)
+    content = dict(content)
     if "\n" in content.get("description", ""):
-        document["description"] = tomlkit.string(f"\n{content['description']}\n", multiline=True)
-    return tomlkit.dumps(document)
+        content["description"] = tomlkit.string(f"\n{content['description']}\n", multiline=True)
+    return tomlkit.dumps(content)

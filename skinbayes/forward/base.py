@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 from skinbayes.lubrication import FlowCurve
 from skinbayes.roughness import TabulatedSpectrum
+from skinbayes.vocabulary import Quantity
 
 ROUGHNESS_INPUTS = ("rms_height", "hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
 """Inputs of a self-affine spectrum; a named surface supplies all of them."""
@@ -70,6 +72,11 @@ class Profile:
     uniform: tuple[str, ...] = ()
 
 
+def nothing_derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
+    """No quantities between inputs and observables."""
+    return {}
+
+
 @dataclass(frozen=True)
 class ForwardModel:
     """Physics with names.
@@ -100,15 +107,19 @@ class ForwardModel:
     costly : True if an evaluation takes so long (a tenth of a millisecond) that fewer walkers are better
     uses_flow_curves : True if flow curves of liquids may stand for ``viscosity``
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
+    quantities : quantities of its own, which become known with it
+    options : name of a choice to its values, the first of which is taken if none is given: ``{"closure": ("gaussian", "sharp")}``
+    variant : the model for given values of all options, called by keyword; needed where there are options
+    chosen : the values that this model was made for
     """
 
     name: str
     summary: str
     observables: tuple[str, ...]
     required: tuple[str | tuple[tuple[str, ...], ...], ...]
-    optional: Mapping[str, float]
     evaluate: Callable[[Inputs, Tables], dict[str, FloatArray]]
-    derived: Callable[[Inputs, Tables], dict[str, FloatArray]]
+    optional: Mapping[str, float] = field(default_factory=dict)
+    derived: Callable[[Inputs, Tables], dict[str, FloatArray]] = nothing_derived
     exclusive: tuple[tuple[tuple[str, ...], ...], ...] = ()
     derived_names: tuple[str, ...] = ()
     blocks: tuple[str, ...] = ()
@@ -124,6 +135,30 @@ class ForwardModel:
     abscissa: Callable[[Inputs, Tables], FloatArray] | None = None
     costly: bool = False
     uses_flow_curves: bool = False
+    quantities: tuple[Quantity, ...] = ()
+    options: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    variant: Callable[..., ForwardModel] | None = None
+    chosen: Mapping[str, str] = field(default_factory=dict)
+
+    def with_options(self, given: Mapping[str, str], where: str = "options") -> ForwardModel:
+        """This model with some of its options set; the others have their first value.
+
+        Raises :class:`InputError` for an option or a value that it does not have; ``where`` is its place, for the message.
+        """
+        for name, value in given.items():
+            if name not in self.options:
+                takes = f"it takes {', '.join(self.options)}" if self.options else "it takes none"
+                raise InputError(
+                    f"{where}: the forward model '{self.name}' has no option '{name:.60}'; {takes}"
+                )
+            if value not in self.options[name]:
+                raise InputError(
+                    f"{where}.{name}: found {value!r:.60}; expected {' or '.join(map(repr, self.options[name]))}"
+                )
+        if self.variant is None:
+            return self
+        chosen = {name: values[0] for name, values in self.options.items()} | dict(given)
+        return replace(self.variant(**chosen), options=self.options, variant=self.variant, chosen=chosen)
 
     def required_names(self) -> tuple[str, ...]:
         """All names that occur in ``required``, alternatives included."""

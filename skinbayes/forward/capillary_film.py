@@ -23,7 +23,11 @@ from skinbayes.forward.contact_inputs import (
 from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import capillary_state
 
-Closure = Literal["gaussian", "delta"]
+Closure = Literal["gaussian", "sharp"]
+
+CLOSURES = {"closure": ("gaussian", "sharp")}
+"""How the gaps at one magnification are distributed: normally, as boundary-element solutions have them, or all alike, most likely
+as the paper had them."""
 
 WATER_INPUTS = ("surface_tension", "contact_angle_skin", "contact_angle_counterface")
 
@@ -109,12 +113,15 @@ def film_profiles(closure: Closure) -> tuple[Profile, ...]:
     )
 
 
-def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardModel:
+def capillary_film_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
     return ForwardModel(
-        name=name,
-        summary=summary,
+        name="capillary-film",
+        summary="contact and gaps of skin held by capillary bridges, against the water film",
         observables=OBSERVABLES,
+        options=CLOSURES,
+        variant=capillary_film_model,
+        chosen={"closure": closure},
         required=("film_thickness", *SKIN_INPUTS, PRESSURE_ALTERNATIVES, *WATER_INPUTS),
         optional=BRIDGED_SKIN_DEFAULTS,
         evaluate=partial(_evaluate, closure=closure),
@@ -129,6 +136,4 @@ def capillary_film_model(name: str, summary: str, closure: Closure) -> ForwardMo
     )
 
 
-MODEL = capillary_film_model(
-    "capillary-film", "contact and gaps of skin held by capillary bridges, against the water film", "gaussian"
-)
+MODEL = capillary_film_model()

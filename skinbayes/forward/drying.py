@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
-from skinbayes.forward.capillary_film import Closure, film_profiles
+from skinbayes.forward.capillary_film import CLOSURES, Closure, film_profiles
 from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
@@ -84,12 +84,15 @@ def _timeline(closure: Closure) -> tuple[Profile, ...]:
     )
 
 
-def drying_model(name: str, summary: str, closure: Closure) -> ForwardModel:
+def drying_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
     model = ForwardModel(
-        name=name,
-        summary=summary,
+        name="drying",
+        summary="friction of skin that is wetted and dries, flooded, held by capillary bridges and dry, against time",
         observables=OBSERVABLES,
+        options=CLOSURES,
+        variant=drying_model,
+        chosen={"closure": closure},
         required=("time", *DRYING_INPUTS),
         optional=DRYING_DEFAULTS,
         accepted=DRYING_ACCEPTED,
@@ -107,8 +110,4 @@ def drying_model(name: str, summary: str, closure: Closure) -> ForwardModel:
     return replace(model, prepare=partial(prepared_drying, model=model)) if closure == "gaussian" else model
 
 
-MODEL = drying_model(
-    "drying",
-    "friction of skin that is wetted and dries, flooded, held by capillary bridges and dry, against time",
-    "gaussian",
-)
+MODEL = drying_model()

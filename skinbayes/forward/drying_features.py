@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import once_for_alike
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
-from skinbayes.forward.capillary_film import Closure
+from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
@@ -76,12 +76,15 @@ def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
     return said + explain_small_contact(inputs, tables)
 
 
-def features_model(name: str, summary: str, closure: Closure) -> ForwardModel:
+def features_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
     model = ForwardModel(
-        name=name,
-        summary=summary,
+        name="drying-features",
+        summary="time, height and width of the friction peak of drying skin, wet plateau, dry friction and the time it is dry",
         observables=OBSERVABLES,
+        options=CLOSURES,
+        variant=features_model,
+        chosen={"closure": closure},
         required=DRYING_INPUTS,
         optional=DRYING_DEFAULTS,
         accepted=DRYING_ACCEPTED,
@@ -98,8 +101,4 @@ def features_model(name: str, summary: str, closure: Closure) -> ForwardModel:
     return replace(model, prepare=partial(prepared_drying, model=model)) if closure == "gaussian" else model
 
 
-MODEL = features_model(
-    "drying-features",
-    "time, height and width of the friction peak of drying skin, its wet plateau, dry friction and the time it is dry",
-    "gaussian",
-)
+MODEL = features_model()

@@ -19,7 +19,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact import stress_variance, total_contact_area
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
-from skinbayes.forward.capillary_film import Closure
+from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, skin_of, spectrum_of
 from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
@@ -44,7 +44,7 @@ STRONG_PULL = 0.5
 
 FLAGS = {
     "strong_bridges": f"bridges pull with more than {STRONG_PULL:g} of the load; how hard hangs on the closure of the gaps "
-    "('humid-air' or 'humid-air-delta'), so rely neither on the value nor on the humidity at which contact is lost",
+    "(the option closure), so rely neither on the value nor on the humidity at which contact is lost",
     "below_molecule": f"bridges span less than {MOLECULE_DIAMETER * 1e9:g} nm, the size of a water molecule, and are no more "
     "than a figure of speech",
     **SMALL_CONTACT,
@@ -181,12 +181,15 @@ def _profiles(closure: Closure) -> tuple[Profile, ...]:
     return (*predicted, modulus)
 
 
-def humid_air_model(name: str, summary: str, closure: Closure) -> ForwardModel:
+def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
     model = ForwardModel(
-        name=name,
-        summary=summary,
+        name="humid-air",
+        summary="contact and friction of skin in humid air, drawn together by bridges of nanometres, against humidity",
         observables=OBSERVABLES,
+        options=CLOSURES,
+        variant=humid_air_model,
+        chosen={"closure": closure},
         required=HUMID_AIR_INPUTS,
         optional=HUMID_AIR_DEFAULTS,
         costly=True,
@@ -205,8 +208,4 @@ def humid_air_model(name: str, summary: str, closure: Closure) -> ForwardModel:
     )
 
 
-MODEL = humid_air_model(
-    "humid-air",
-    "contact and friction of skin in equilibrium with humid air, drawn together by bridges of nanometres, against humidity",
-    "gaussian",
-)
+MODEL = humid_air_model()

@@ -67,10 +67,11 @@ def bind(
     """
     if forward is None:
         forward = forward_model(spec.forward, f"{spec.path}: forward")
+    settings = dict(settings or {})
+    options = {name: settings.pop(name) for name in list(settings) if name in forward.options}
+    forward = forward.with_options(spec.options | options, f"{spec.path}: options")
     asked = None if conditions is None else user_rows(spec, forward, conditions)
-    written, chosen, taken = apply_settings(
-        spec, forward, settings or {}, () if asked is None else asked.values
-    )
+    written, chosen, taken = apply_settings(spec, forward, settings, () if asked is None else asked.values)
     found = choose_surface(spec, chosen or surface)
     spec = replace(spec, surface_name=found.name, surface_file=found.file)
     curves = load_flow_curves(spec, forward, rheology)
@@ -81,7 +82,7 @@ def bind(
     check_derived(
         spec, forward, parameters, rows.conditions, whole_data=rows.dataset is not None and not other_data
     )
-    problem = _problem(spec, forward, parameters, found.spectrum, rows, curves, dict(settings or {}))
+    problem = _problem(spec, forward, parameters, found.spectrum, rows, curves, settings | options)
     _check_medians(problem)
     return problem
 

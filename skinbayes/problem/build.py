@@ -39,6 +39,7 @@ def build_problem(
     rheology: Mapping[str, Any] | None = None,
     derived: Mapping[str, Mapping[str, Any]] | None = None,
     conditions: Mapping[str, Any] | None = None,
+    options: Mapping[str, str] | None = None,
     name: str = "my-model",
     title: str = "",
     description: str = "",
@@ -64,6 +65,7 @@ def build_problem(
     rheology : ``by`` (a label column) and ``data``, flow curves of the liquids, in any form that data have
     derived : name to ``product`` and, if wanted, ``rows``, ``symbol``, ``meaning``
     conditions : inputs at which a model without data is evaluated, each a list of values
+    options : options of the forward model, such as ``{"closure": "sharp"}``
     name, title, description : what the problem is called, and what it is about
 
     Returns
@@ -78,7 +80,7 @@ def build_problem(
     Examples
     --------
     >>> problem = build_problem(
-    ...     "friction-constant",
+    ...     "constant",
     ...     {"friction_coefficient": [0.31, 0.27, 0.33]},
     ...     parameters={"typical_friction_coefficient": {"lognormal": [0.5, 1.0], "source": "weak on purpose"}},
     ...     noise={"family": "lognormal", "noise_scale": {"half_normal": 0.3}},
@@ -96,6 +98,7 @@ def build_problem(
         "description": description,
         "forward": model.name,
     }
+    content["options"] = dict(options or {})
     if dataset is not None:
         content["data"] = _without_none({
             **_source(data, dataset), "observables" if several else "observable": observables if several else observables[0],

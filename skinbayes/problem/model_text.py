@@ -47,6 +47,8 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
         "description": spec.description,
         "forward": spec.forward,
     }
+    usual = {name: values[0] for name, values in problem.forward.options.items()}
+    content["options"] = {} if problem.forward.chosen == usual else dict(problem.forward.chosen)
     if spec.observables:
         content["data"] = _data(problem, path, beside)
     if problem.tables.spectrum is not None:

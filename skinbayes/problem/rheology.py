@@ -85,7 +85,9 @@ def flow_curves_text(curves: Mapping[str, FlowCurve], column: str) -> str:
     points = [
         (level, rate, viscosity)
         for level, curve in curves.items()
-        for rate, viscosity in zip(curve.shear_rate, curve.measured_viscosity, strict=True)
+        for rate, viscosity in zip(
+            np.asarray(curve.shear_rate).tolist(), np.asarray(curve.measured_viscosity).tolist(), strict=True
+        )
     ]
     levels, rates, viscosities = zip(*points, strict=True)
     columns = {column: list(levels), "shear_rate": np.array(rates), "viscosity": np.array(viscosities)}

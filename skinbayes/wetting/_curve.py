@@ -18,7 +18,7 @@ from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._roots import smallest_root
 from skinbayes.wetting._types import BoolArray, IndexArray
 
-TERMS = {"gaussian": 32, "delta": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
+TERMS = {"gaussian": 32, "sharp": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
 _BLOCK = 8192  # of a block that is solved at a time
 _REACH, _MARGIN = 0.75, 0.97
 REFERENCE = 3.0  # d0 in units of the mean separation at p0

@@ -14,7 +14,7 @@ from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.roughness.tabulated import TabulatedSpectrum
 from skinbayes.wetting._mixture import Mixture
 
-Closure = Literal["gaussian", "delta"]
+Closure = Literal["gaussian", "sharp"]
 
 
 @dataclass(frozen=True, eq=False)

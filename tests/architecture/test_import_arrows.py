@@ -23,6 +23,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "version": set(),
     "vocabulary": {"errors", "synonyms"},
     "units": {"errors", "arrays", "vocabulary", "constants"},
+    "plugins": {"vocabulary"},
     # physics
     "roughness": {"errors", "arrays", "constants"},
     "contact": {"errors", "arrays", "constants", "roughness"},
@@ -34,9 +35,9 @@ MAY_KNOW: dict[str, set[str]] = {
     "sampling": {"errors", "arrays", *FILES, "statistics"},
     "diagnose": {"errors", "arrays", "statistics"},
     # where they meet
-    "files": {*WORDS, "units", "roughness", "statistics"},
-    "forward": {*WORDS, *PHYSICS},
-    "problem": {*WORDS, "units", "roughness", "statistics", "diagnose", "files", "forward", "version"},
+    "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
+    "forward": {*WORDS, "plugins", *PHYSICS},
+    "problem": {*WORDS, "atomic", "units", "roughness", "statistics", "diagnose", "files", "forward", "version"},
     "fit": {*WORDS, *FILES, "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
@@ -44,7 +45,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
     "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
     # the shop window names its goods but opens them when asked
-    "skinbayes": {"version", "errors", "vocabulary", "statistics", "files", "problem", "fit", "comparison"},
+    "skinbayes": {"version", "errors", "vocabulary", "statistics", "files", "forward", "problem", "fit", "comparison"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
 
@@ -66,6 +67,7 @@ HOMES: dict[str, set[str]] = {
     "platformdirs": {"forward"},
     "pydantic": {"files"},
     "rich": {"cli"},
+    "tomlkit": {"files"},
     "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot"},
     "xarray": {"fit", "plot", "report"},
 }

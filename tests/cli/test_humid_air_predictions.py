@@ -19,7 +19,7 @@ from skinbayes.wetting import (
 )
 
 LOAD, SHEAR = 6830.0, 15e6
-MODELS = ("humid-air", "humid-air-delta")
+MODELS = ("humid-air", "humid-air:sharp")
 ELASTIC = "yield_stress=inf Pa"
 NO_BRIDGES = "contact_angle_counterface=102 deg"
 
@@ -27,6 +27,8 @@ NO_BRIDGES = "contact_angle_counterface=102 deg"
 @pytest.fixture
 def predict(capsys):
     def at(model: str, *pairs: str, rows=None) -> tuple[np.ndarray, dict[str, np.ndarray], str]:
+        model, _, closure = model.partition(":")
+        pairs = (*pairs, f"closure={closure}") if closure else pairs
         words = [word for pair in pairs for word in ("--set", pair)]
         words += [] if rows is None else ["--conditions", rows]
         outcome = run(capsys, "predict", model, "--json", *words)
@@ -103,7 +105,7 @@ NAMES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 @pytest.mark.parametrize("case", OTHER)
 def test_other_skin_against_direct_calls_and_independent_code(predict, case, closure):
     plain, load, first, second, kelvin, humidity, correction, limit = OTHER[case]
@@ -111,7 +113,7 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
     words += [f"nominal_pressure={load} Pa", f"area_correction={correction}", f"yield_stress={limit} Pa"]
     words += [f"contact_angle_skin={first} deg", f"contact_angle_counterface={second} deg"]
     words += [f"temperature={kelvin} K", f"relative_humidity={humidity}", "frictional_shear_stress=8 MPa"]
-    found = predict("humid-air" if closure == "gaussian" else "humid-air-delta", *words)[1]
+    found = predict("humid-air" if closure == "gaussian" else "humid-air:sharp", *words)[1]
     pull, radius = found["capillary_pressure"][0], found["kelvin_radius"][0]
     body = PlainContact(**plain)
     skin = LayeredSkin(body.layer, body.bulk, body.nu_layer, body.nu_bulk, body.thickness)

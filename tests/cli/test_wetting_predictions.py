@@ -20,6 +20,8 @@ NO_BRIDGES = "contact_angle_counterface=102 deg"
 @pytest.fixture
 def predict(capsys):
     def at(model: str, *pairs: str, rows=None) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        model, _, closure = model.partition(":")
+        pairs = (*pairs, f"closure={closure}") if closure else pairs
         words = [word for pair in pairs for word in ("--set", pair)]
         words += [] if rows is None else ["--conditions", rows]
         outcome = run(capsys, "predict", model, "--json", *words)
@@ -38,8 +40,8 @@ def predict(capsys):
     [
         ("capillary-film", 0, 0.62, 5.8e-6, 11.05e-6),
         ("capillary-film", 20, 0.585, 5.8e-6, 11.15e-6),
-        ("capillary-film-delta", 0, 0.75, 9.7e-6, 10.7e-6),
-        ("capillary-film-delta", 20, 0.705, 9.7e-6, 10.8e-6),
+        ("capillary-film:sharp", 0, 0.75, 9.7e-6, 10.7e-6),
+        ("capillary-film:sharp", 20, 0.705, 9.7e-6, 10.8e-6),
     ],
 )
 def test_skin_on_glass(predict, model, angle, pull, film, separation):
@@ -78,14 +80,14 @@ NAMES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 @pytest.mark.parametrize("case", OTHER_SKIN)
 def test_other_skin_against_scalars_and_independent_code(predict, case, closure):
     plain, load, first, second, film, correction = OTHER_SKIN[case]
     words = [NAMES[name].format(value) for name, value in plain.items()]
     words += [f"nominal_pressure={load} Pa", f"area_correction={correction}", f"film_thickness={film!r} m"]
     words += [f"contact_angle_skin={first} deg", f"contact_angle_counterface={second} deg"]
-    model = "capillary-film" if closure == "gaussian" else "capillary-film-delta"
+    model = "capillary-film" if closure == "gaussian" else "capillary-film:sharp"
     found = {name: values[0] for name, values in predict(model, *words)[1].items()}
     body = PlainContact(**plain)
     skin = LayeredSkin(body.layer, body.bulk, body.nu_layer, body.nu_bulk, body.thickness)

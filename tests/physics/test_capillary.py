@@ -36,8 +36,8 @@ def paper(film, glass=0.0, **options):
     [
         ("gaussian", 0, 0.62, 5.8e-6, 11.05e-6),
         ("gaussian", 20, 0.585, 5.8e-6, 11.16e-6),
-        ("delta", 0, 0.75, 9.7e-6, 10.70e-6),
-        ("delta", 20, 0.705, 9.7e-6, 10.82e-6),
+        ("sharp", 0, 0.75, 9.7e-6, 10.70e-6),
+        ("sharp", 20, 0.705, 9.7e-6, 10.82e-6),
     ],
 )
 def test_strongest_pull_of_the_paper(closure, glass, pull, film, separation):
@@ -46,7 +46,7 @@ def test_strongest_pull_of_the_paper(closure, glass, pull, film, separation):
     state = capillary_state(films, LOAD, SURFACE, WET, 0.0720, SKIN_ANGLE, np.radians(glass), closure=closure)
     best = np.argmax(state.capillary_pressure)
     assert state.capillary_pressure[best] / LOAD == pytest.approx(pull, rel=0.005)
-    assert films[best] == pytest.approx(film, abs=0.4e-6 if closure == "delta" else 0.1e-6)
+    assert films[best] == pytest.approx(film, abs=0.4e-6 if closure == "sharp" else 0.1e-6)
     assert state.mean_separation[best] == pytest.approx(separation, rel=0.001)
 
 
@@ -107,7 +107,7 @@ def brute_force(film, load, surface, skin, pull, closure):
         (3e-6, 6830.0, WET, (80.0, 20.0), "gaussian"),
         (0.4e-6, 2500.0, LayeredSkin(3e6, 60e3, 0.4, 0.5, 35e-6), (60.0, 75.0), "gaussian"),
         (1.5e-6, 20e3, LayeredSkin(60e6, 40e3, 0.5, 0.45, 15e-6), (95.0, 10.0), "gaussian"),
-        (4e-6, 9000.0, WET, (70.0, 40.0), "delta"),
+        (4e-6, 9000.0, WET, (70.0, 40.0), "sharp"),
     ],
 )
 def test_brute_force(film, load, skin, angles, closure):
@@ -115,14 +115,14 @@ def test_brute_force(film, load, skin, angles, closure):
     pull = TENSION * (np.cos(first) + np.cos(second))
     pressure, gap = brute_force(film, load, SURFACE, skin, pull, closure)
     state = capillary_state(film, load, SURFACE, skin, TENSION, first, second, closure=closure)
-    sharp = closure == "delta"  # which costs the quadrature some digits
+    sharp = closure == "sharp"  # which costs the quadrature some digits
     assert state.total_pressure == pytest.approx(pressure, rel=1e-6 if sharp else 1e-7)
     assert state.kelvin_gap == pytest.approx(gap, rel=1e-5 if sharp else 1e-6)
     again = capillary_state_at_gap(gap, load, SURFACE, skin, TENSION, first, second, closure=closure)
     assert again.film_thickness == pytest.approx(film, rel=1e-5 if sharp else 1e-6)
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 def test_residuals_with_the_public_gap_distribution(closure):
     films = np.geomspace(0.05e-6, 13e-6, 9)
     state = paper(films, 20.0, closure=closure)
@@ -216,13 +216,13 @@ def test_hysteresis_is_seen_and_both_branches_can_be_had():
     radius = 0.44735e-9
     gap = kelvin_gap(radius, SKIN_ANGLE, 0.0)
     sides = [
-        capillary_state_at_gap(gap, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, closure="delta", branch=b)
+        capillary_state_at_gap(gap, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, closure="sharp", branch=b)
         for b in ("approach", "retreat")
     ]
     assert sides[0].solutions == sides[1].solutions == 3
     assert sides[1].total_pressure > 1.05 * sides[0].total_pressure
     for side in sides:
-        gaps = gap_distribution(side.total_pressure, SURFACE, WET, closure="delta")
+        gaps = gap_distribution(side.total_pressure, SURFACE, WET, closure="sharp")
         wet = gaps.cumulative(gap) - gaps.contact_fraction
         total = LOAD + TENSION / radius * wet
         assert side.total_pressure == pytest.approx(total, rel=1e-10)

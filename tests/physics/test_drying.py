@@ -44,7 +44,7 @@ def curve(time, contact=CONTACT, spread=2e-7, start=START, film=FILM):
     return drying_curve(time, start, film, RATE, contact, SHEAR, LOAD, spread)
 
 
-@pytest.mark.parametrize(("closure", "time", "friction"), [("gaussian", 513.0, 2.31), ("delta", 490.0, 2.49)])
+@pytest.mark.parametrize(("closure", "time", "friction"), [("gaussian", 513.0, 2.31), ("sharp", 490.0, 2.49)])
 def test_timeline_of_the_paper(closure, time, friction):
     contact = contact_of(closure=closure)
     features = drying_features(START, FILM, RATE, contact, SHEAR, LOAD)

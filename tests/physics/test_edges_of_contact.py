@@ -111,7 +111,7 @@ def check_all_edges(surface_kind, skin_kind, count):
     mean = mean_separation(pressure[:, None], surface, skin)
     # where contact is closed but for rounding nothing can carry the mean
     unclosed = mean[:, 0] > 1e-13 * surface.rms_height
-    for closure in ("gaussian", "delta"):
+    for closure in ("gaussian", "sharp"):
         gaps = gap_distribution(pressure[:, None], surface, skin, 0.42, closure)
         assert all(np.isfinite(getattr(gaps, field.name)).all() for field in fields(gaps))
         np.testing.assert_allclose(gaps.film(np.inf)[unclosed], mean[unclosed], rtol=1e-6)

@@ -102,7 +102,7 @@ def some_gaps(closure="gaussian", count=20):
     return gap_distribution(p, surface, material, 0.42, closure), p, surface, material
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 def test_area_and_mean_are_those_of_the_theory(closure):
     gaps, p, surface, material = some_gaps(closure)
     variance = stress_variance(surface, material)[:, None]
@@ -115,7 +115,7 @@ def test_area_and_mean_are_those_of_the_theory(closure):
     assert np.all(gaps.weight >= 0) and np.all(gaps.location >= 0) and np.all(gaps.width > 0)
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 def test_film_is_the_moment_of_the_distribution(closure):
     gaps, *_ = some_gaps(closure, 3)
     for i in range(3):
@@ -177,7 +177,7 @@ def test_gaps_of_contacts_at_full_load_are_closed():
         assert pressed.cumulative(1e-9) == 1 and pressed.film(1e-6) == pytest.approx(0, abs=1e-20)
 
 
-@pytest.mark.parametrize(("closure", "step"), [("gaussian", 2e-3), ("delta", 3e-4)])  # its bells are narrow
+@pytest.mark.parametrize(("closure", "step"), [("gaussian", 2e-3), ("sharp", 3e-4)])  # its bells are narrow
 @pytest.mark.parametrize("seed", range(3))
 def test_no_kinks_along_lines_through_the_parameters(closure, step, seed):
     rng = np.random.default_rng(seed)
@@ -199,7 +199,7 @@ def identical(a, b):
     return np.array_equal(np.asarray(a), np.asarray(b), equal_nan=True)
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 def test_batch_and_rows_agree_to_the_last_bit(closure):
     roughness, skin, _ = random_parameters(9, 4)
     gamma, p, d = np.linspace(0.3, 1, 9), np.geomspace(1e3, 1e6, 7), np.geomspace(1e-8, 1e-4, 5)
@@ -229,7 +229,7 @@ def test_table_and_closed_spectrum_agree():
 def test_the_closures_differ_where_the_paper_needs_it():
     # film at which the paper finds the largest attraction: 6 to 9 µm; a Gaussian scatter of gaps fills sooner
     surface = named_surface("paper_reference")
-    broad, sharp = (gap_distribution(9.6e3, surface, WET, 0.42, closure) for closure in ("gaussian", "delta"))
+    broad, sharp = (gap_distribution(9.6e3, surface, WET, 0.42, closure) for closure in ("gaussian", "sharp"))
     assert broad.cumulative(5e-6) > 2 * sharp.cumulative(5e-6)
     assert broad.mean == sharp.mean
 

@@ -78,7 +78,7 @@ def deviations(spectrum, skin, length, n, pressure, seeds):
     """Mean gap relative to theory, and the largest difference of F for both closures."""
     mean, shares = found_by_boundary_elements(spectrum, skin, length, n, pressure, seeds)
     off = []
-    for closure in ("gaussian", "delta"):
+    for closure in ("gaussian", "sharp"):
         gaps = gap_distribution(pressure, spectrum, skin, closure=closure)
         off.append(np.abs(gaps.cumulative(SHARES * gaps.mean) - shares).max())
     return mean / mean_separation(pressure, spectrum, skin), *off

@@ -93,7 +93,7 @@ def test_a_table_knows_where_it_ends():
     assert table_over(groups, strength, most=10) is None
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 def test_solutions_need_not_be_counted_to_be_found(closure):
     humidity = np.array([0.05, 0.3, 0.5, 0.8, 0.95, 1.0])
     moduli = np.array([5e6, 7e6, 12e6, 40e6, 300e6, 1e9])
@@ -105,7 +105,7 @@ def test_solutions_need_not_be_counted_to_be_found(closure):
     assert np.isnan(first.solutions[:, :-1]).all()
     assert (all_of_them.solutions >= 1).all()
     # there is more than one to choose from
-    assert (all_of_them.solutions > 1).any() == (closure == "delta")
+    assert (all_of_them.solutions > 1).any() == (closure == "sharp")
 
 
 # -- a table of moduli ---------------------------------------------------------------------------------------------------

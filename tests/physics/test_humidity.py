@@ -47,7 +47,7 @@ def test_molecules():
     assert molecular_volume_of_water(ROOM) ** (1 / 3) == pytest.approx(0.31e-9, rel=0.01)
 
 
-@pytest.mark.parametrize("closure", ["gaussian", "delta"])
+@pytest.mark.parametrize("closure", ["gaussian", "sharp"])
 def test_contact_against_humidity_as_in_the_paper(closure):
     humidity = np.array([0.15, 0.3, 0.5, 0.8, 0.9, 0.99])
     stiff = np.log10(in_air(humidity, layer(70e6), closure=closure).relative_contact_area)
