@@ -58,11 +58,24 @@ CORPUS: dict[str, tuple[bytes | str, tuple[str, ...]]] = {
     "quotes do not match": (HEADER + '"A,1,0.5\n', ("line 2", "quotation marks")),
     "column twice": (
         "normal_force [N],normal_force [mN]\n1,1\n",
-        ("line 1", "'normal_force' appears twice", "expected each quantity once"),
+        ("line 1", "'normal_force' appears twice", "expected each column once"),
     ),
     "unknown column": (
         "normal_forse [N]\n1\n",
+        ("line 1", "no quantity that skinbayes knows", "Did you mean 'normal_force'?"),
+    ),
+    "unknown column without unit, numbers": (
+        "normal_forse,sphere_radius [m]\n1,1\n",
         ("line 1", "unknown column 'normal_forse'", "Did you mean 'normal_force'?"),
+    ),
+    "brackets do not match": (
+        "site [left,sphere_radius [m]\na,1\n",
+        ("line 1", "'site [left'", "square brackets"),
+    ),
+    "empty brackets": ("sebum [],sphere_radius [m]\n1,1\n", ("line 1", "'sebum' has no unit")),
+    "fewer than one measurement": (
+        "friction_coefficient [1],friction_coefficient_standard_error [1],n\n1,0.1,0\n",
+        ("line 2", "'number_of_measurements'", "expected >= 1"),
     ),
     "unit in round brackets": (
         "normal_force (N)\n1\n",
