@@ -70,8 +70,11 @@ def fit(
     from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
     from skinbayes.problem import load_problem
+    from skinbayes.problem.rows import data_notes
 
     problem = load_problem(model, data=data)
+    for note in data_notes(problem):
+        say(note, err=True)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     try:
         with fit_progress() as (count, progress):

@@ -116,15 +116,14 @@ def write_inputs(directory: Path, problem: Problem) -> Manifest:
         settings["surface"] = problem.settings["surface"]
     if problem.dataset is not None:
         source = Path(problem.dataset.path)
-        note["data"] = f"data/{source.name}"
-        if source.is_file():
-            copies[note["data"]] = source
-        else:  # a data frame: its selected rows
-            note["data"] = "data/data.csv"
+        note["data"] = "data/columns.csv" if problem.dataset.in_memory else f"data/{source.name}"
+        if problem.dataset.in_memory:
             texts[note["data"]] = problem.dataset.to_csv()
+        else:
+            copies[note["data"]] = source
         note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
         provenance = source.with_name("provenance.toml")
-        if source.name == "data.csv" and provenance.exists():
+        if not problem.dataset.in_memory and source.name == "data.csv" and provenance.exists():
             copies[f"data/{provenance.name}"] = provenance
             note["data"] = "data"
     rheology, by, spectrum = problem.spec.rheology, problem.spec.rheology_by, problem.tables.spectrum

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
+from skinbayes.files.dataset import Data, Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Tables, forward_model
@@ -20,7 +19,15 @@ from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.problem import Problem
 from skinbayes.problem.rheology import REPLACED, flow_curves_of, load_flow_curves
-from skinbayes.problem.rows import crossed_groups, data_rows, default_rows, relative_input_spread, user_rows
+from skinbayes.problem.rows import (
+    crossed_groups,
+    data_rows,
+    default_rows,
+    relative_input_spread,
+    selected_dataset,
+    used_columns,
+    user_rows,
+)
 from skinbayes.problem.settings import apply_settings
 from skinbayes.problem.surface import Surface, choose_surface
 from skinbayes.roughness import TabulatedSpectrum
@@ -44,7 +51,7 @@ def bind(
     surface: TabulatedSpectrum | None = None,
     rheology: Dataset | None = None,
     settings: Mapping[str, str] | None = None,
-    conditions: str | Path | None = None,
+    conditions: Data | None = None,
     other_data: bool = False,
 ) -> Problem:
     """Make a problem of a validated model.
@@ -57,7 +64,7 @@ def bind(
     surface : a measured spectrum in place of the surface of the model
     rheology : flow curves in place of those that the model names
     settings : values to fix, as :func:`skinbayes.load_problem` takes them
-    conditions : a CSV of rows to predict instead of the data's
+    conditions : rows to predict instead of the data's
     other_data : True if the data are not those that the model was written for, so that they may lack rows it speaks of
 
     Raises
@@ -77,7 +84,7 @@ def bind(
     curves = load_flow_curves(spec, forward, rheology)
     taken |= {REPLACED} if curves else set()
     rows = _rows(spec, forward, data, taken) if asked is None else _Rows(asked.without(taken))
-    parameters = _completed(spec, forward, written, found, rows.conditions, bool(curves))
+    parameters = _completed(spec, forward, written, found, rows, bool(curves))
     check_scatter(spec, rows.observations)
     check_derived(
         spec, forward, parameters, rows.conditions, whole_data=rows.dataset is not None and not other_data
@@ -98,22 +105,10 @@ def _rows(spec: ModelSpec, forward: ForwardModel, data: Dataset | None, taken: s
                 f"('skinbayes template {spec.name}' writes the header of such a file)"
             )
         return _Rows(default_rows(spec, taken))
-    dataset = _own_dataset(spec) if data is None else data
+    dataset = selected_dataset(spec) if data is None else data
+    dataset = dataset.complete(used_columns(spec, forward, taken), spec.missing == "drop")
     conditions, observations = data_rows(spec, forward, dataset, taken)
     return _Rows(conditions, dataset, observations)
-
-
-def _own_dataset(spec: ModelSpec) -> Dataset:
-    """Those rows of the data set that the model names which it takes."""
-    try:
-        find_dataset(str(spec.dataset))
-    except InputError as error:
-        raise InputError(f"{spec.path}: data: {error}") from None
-    dataset = load_dataset(str(spec.dataset))
-    try:
-        return dataset.select(spec.rows) if spec.rows else dataset
-    except InputError as error:
-        raise InputError(f"{spec.path}: data.rows: {error}") from None
 
 
 def _completed(
@@ -121,20 +116,21 @@ def _completed(
     forward: ForwardModel,
     parameters: list[ParameterSpec],
     surface: Surface,
-    conditions: Conditions,
+    rows: _Rows,
     has_curves: bool,
 ) -> tuple[ParameterSpec, ...]:
     """All parameters: those of the model, of its surface, the defaults of the forward model, and those of noise and groups."""
-    given = {p.name for p in parameters} | set(conditions.values)
+    given = {p.name for p in parameters} | set(rows.conditions.values)
     if has_curves and REPLACED in given:
         raise InputError(
             f"{spec.path}: '{REPLACED}' is given twice: as a parameter and by [rheology]; drop one"
         )
     parameters = parameters + [p for p in surface.parameters if p.name not in given]
-    check_names(spec, forward, parameters, conditions)
+    check_names(spec, forward, parameters, rows.conditions)
     given |= {p.name for p in parameters}
     check_covariates(spec, forward)
-    check_required(spec, forward, given | ({REPLACED} if has_curves else set()), surface.spectrum)
+    columns = () if rows.dataset is None else rows.dataset.units
+    check_required(spec, forward, given | ({REPLACED} if has_curves else set()), surface.spectrum, columns)
     defaults = [
         ParameterSpec(
             key, QUANTITIES[key].unit, None, None, float(value), None, source=f"default of {forward.name}"

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset, as_dataset
 from skinbayes.files.locate import shipped_names
 from skinbayes.files.modelfile import read_model
@@ -18,6 +17,7 @@ from skinbayes.files.written import written_parameter, written_value
 from skinbayes.forward import ForwardModel, forward_model
 from skinbayes.problem.bind import bind
 from skinbayes.problem.problem import Problem
+from skinbayes.problem.rows import selected_dataset
 from skinbayes.roughness import SURFACES, TabulatedSpectrum
 from skinbayes.statistics.noise_families import NOISE_FAMILIES
 from skinbayes.vocabulary import QUANTITIES
@@ -33,6 +33,7 @@ def build_problem(
     rows: Mapping[str, Sequence[str]] | None = None,
     spread: str | None = None,
     input_spread: str | None = None,
+    missing: str | None = None,
     surface: str | Path | TabulatedSpectrum | None = None,
     groups: Mapping[str, Any] | None = None,
     covariates: Mapping[str, Mapping[str, Any]] | None = None,
@@ -59,6 +60,7 @@ def build_problem(
     observable : column (or columns) that the model explains; the first of the forward model if not given
     rows : label column to the labels of the rows that are used
     spread, input_spread : ``"use"`` or ``"ignore"`` the columns ``…_standard_deviation`` of observables, and of inputs
+    missing : ``"drop"`` to leave out rows without a value in a column that is used
     surface : a named surface, the path of a spectrum, or a spectrum
     groups : label column to the prior of the scale of the effects that its rows share
     covariates : name to ``column``, ``acts_on``, ``reference`` and ``exponent``
@@ -91,7 +93,7 @@ def build_problem(
     model = forward_model(forward) if isinstance(forward, str) else forward
     observables = _observables(model, observable)
     several = not (observable is None or isinstance(observable, str))
-    dataset = None if data is None else as_dataset(data, name=f"{name}-data")
+    dataset = None if data is None else _as_dataset(data, f"{name}-data")
     content: dict[str, Any] = {
         "format": 1,
         "title": title or name,
@@ -103,7 +105,8 @@ def build_problem(
         content["data"] = _without_none({
             **_source(data, dataset), "observables" if several else "observable": observables if several else observables[0],
             "rows": None if rows is None else {key: list(levels) for key, levels in rows.items()},
-            "spread": spread, "input_spread": input_spread,
+            "spread": spread,
+            "input_spread": input_spread, "missing": missing,
         })  # fmt: skip
     if isinstance(surface, TabulatedSpectrum):
         content["surface"] = {"file": f"{name}-spectrum.csv"}
@@ -133,7 +136,7 @@ def build_problem(
     curves = None
     if rheology is not None:
         given = rheology.get("data")
-        curves = as_dataset(given, name=f"{name}-rheology")
+        curves = _as_dataset(given, f"{name}-rheology")
         content["rheology"] = {**_source(given, curves), "by": rheology.get("by")}
     content["derived"] = {key: dict(block) for key, block in (derived or {}).items()}
     content["conditions"] = {
@@ -144,11 +147,7 @@ def build_problem(
         "parameters": content["parameters"]
     }
     spec = replace(read_model(content, Path(name), ""), text=toml_text(content))
-    if dataset is not None and rows:
-        try:
-            dataset = dataset.select(rows)
-        except InputError as error:
-            raise InputError(f"{name}: rows: {error}") from None
+    dataset = None if dataset is None else selected_dataset(spec, dataset)
     spectrum = surface if isinstance(surface, TabulatedSpectrum) else None
     return bind(spec, dataset, forward=model, surface=spectrum, rheology=curves)
 
@@ -159,11 +158,18 @@ def _observables(model: ForwardModel, given: str | Sequence[str] | None) -> list
     return [given] if isinstance(given, str) else list(given)
 
 
+def _as_dataset(given: Any, name: str) -> Dataset:
+    """A data set of what stands for one; cells without a value are kept until it is known whether they matter."""
+    if not isinstance(given, Dataset) and hasattr(given, "items"):
+        return Dataset.from_columns(given, name, missing="keep")
+    return as_dataset(given, missing="keep")
+
+
 def _source(given: Any, dataset: Dataset) -> dict[str, str]:
     """Where a model file finds a data set."""
     if isinstance(given, str) and given in shipped_names("datasets"):
         return {"dataset": given}
-    return {"file": str(dataset.path.resolve() if dataset.path.exists() else dataset.path)}
+    return {"file": f"{dataset.path}.csv" if dataset.in_memory else str(dataset.path.resolve())}
 
 
 def _unit(name: str) -> str:

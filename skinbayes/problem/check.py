@@ -16,6 +16,7 @@ from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.problem.failures import explained
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
+from skinbayes.problem.rows import data_notes
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.units import format_quantity
 
@@ -105,6 +106,7 @@ def _setup(problem: StatisticalModel) -> tuple[str, ...]:
             + "; ".join(f"{o.name}, noise {o.noise.name}" for o in problem.observations)
             + "."
         )
+        said += data_notes(problem)
         if free > rows:
             said.append(
                 f"There are more free parameters ({free}) than data ({rows}): the priors decide what remains open."

@@ -29,8 +29,10 @@ def funnels_of(problem: StatisticalModel, logarithmic: tuple[bool, ...]) -> tupl
     found = []
     for column in groups.columns:
         scale = f"group_scale[{column}]"
-        for name in dict.fromkeys(p.name for p in problem.free if p.by == column):
-            levels = [i for i, p in enumerate(problem.free) if p.name == name and p.by == column]
+        for name in dict.fromkeys(p.name for p in problem.free if p.by_column and p.by == column):
+            levels = [
+                i for i, p in enumerate(problem.free) if p.name == name and p.by_column and p.by == column
+            ]
             if (
                 scale in names
                 and len(levels) > 1

@@ -7,17 +7,18 @@ from dataclasses import replace
 from pathlib import Path
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, load_dataset
+from skinbayes.files.dataset import Data, Dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.problem.bind import bind
 from skinbayes.problem.problem import Problem
+from skinbayes.problem.rows import selected_dataset
 
 
 def load_problem(
     name: str | Path,
-    data: str | Path | Dataset | None = None,
+    data: Data | None = None,
     settings: Mapping[str, str] | None = None,
-    conditions: str | Path | None = None,
+    conditions: Data | None = None,
     rheology: str | Path | None = None,
 ) -> Problem:
     """Bind a model file to its data.
@@ -25,11 +26,11 @@ def load_problem(
     Parameters
     ----------
     name : shipped model or path of a model file
-    data : a CSV of the user's own (or a data set) to use instead of the one named in the model file; of a
-        :class:`Dataset` all rows are used, whichever the model file selects
+    data : a CSV of the user's own (or a data set, a data frame, a mapping of columns) to use instead of the one named in the
+        model file; of a :class:`Dataset` all rows are used, whichever the model file selects
     settings : values to fix, as text with unit: ``{"yield_stress": "40 MPa", "surface": "paper_printed"}``;
         ``name[level]`` fixes one level of a parameter that differs by group
-    conditions : a CSV of rows to predict instead of the data's; such a problem has no likelihood
+    conditions : a CSV (or as ``data``) of rows to predict instead of the data's; such a problem has no likelihood
     rheology : a CSV of flow curves (or a data set) to use instead of the one named in the model file
 
     Returns
@@ -55,12 +56,7 @@ def load_problem(
         raise InputError(f"{spec.path}: the model has no [data] block, so data cannot be given to it")
     if isinstance(data, Dataset):
         return bind(spec, data, settings=settings, other_data=True)
-    dataset = load_dataset(data)
-    if spec.rows:
-        try:
-            dataset = dataset.select(spec.rows)
-        except InputError as error:
-            raise InputError(f"{spec.path}: data.rows: {error}") from None
+    dataset = selected_dataset(spec, data)
     return bind(_of_other_data(spec, dataset), dataset, settings=settings, other_data=True)
 
 

@@ -120,7 +120,7 @@ def _data(problem: BoundModel, path: Path, beside: Any) -> dict[str, Any]:
     rows = spec.rows
     if dataset is not None:
         rows = dict(dataset.selection)
-        place = _dataset(str(dataset.path), path)
+        place = None if dataset.in_memory else _dataset(str(dataset.path), path)
         block |= place or {"file": beside("data", dataset.to_csv())}
         rows = rows if place else {}  # what is written beside has the selected rows only
     elif spec.dataset is not None:
@@ -132,7 +132,8 @@ def _data(problem: BoundModel, path: Path, beside: Any) -> dict[str, Any]:
     if rows:
         block["rows"] = {column: list(levels) for column, levels in rows.items()}
     block |= {"spread": spec.spread} if spec.spread else {}
-    return block | ({"input_spread": spec.input_spread} if spec.input_spread else {})
+    block |= {"input_spread": spec.input_spread} if spec.input_spread else {}
+    return block | ({"missing": spec.missing} if spec.missing else {})
 
 
 def _dataset(name: str, path: Path) -> dict[str, str] | None:

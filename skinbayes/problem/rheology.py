@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, as_dataset, find_dataset, load_dataset
+from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.forward import FlowCurve, ForwardModel
 from skinbayes.problem.inputs import Conditions
@@ -91,4 +91,4 @@ def flow_curves_text(curves: Mapping[str, FlowCurve], column: str) -> str:
     ]
     levels, rates, viscosities = zip(*points, strict=True)
     columns = {column: list(levels), "shear_rate": np.array(rates), "viscosity": np.array(viscosities)}
-    return as_dataset(columns, name="flow curves").to_csv()
+    return Dataset.from_columns(columns, "flow curves").to_csv()

@@ -72,7 +72,10 @@ def _replace(
         found = ", ".join(str(item) for item in levels if item) or "no levels"
         raise InputError(f"--set {key}: {name} has {found}; '{level}' is not one of them")
     return [
-        replace(new, by=p.by, level=level) if p.name == name and p.level == level else p for p in parameters
+        replace(new, by=p.by, level=level, by_column=p.by_column)
+        if p.name == name and p.level == level
+        else p
+        for p in parameters
     ]
 
 
