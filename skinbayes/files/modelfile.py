@@ -147,6 +147,8 @@ def read_model(content: Mapping[str, Any], path: Path, text: str) -> ModelSpec:
     places = Places(path, text)
     try:
         _check_printable(content, places)
+        if broken := installed_forward_models()[1].get(block.forward):
+            raise InputError(f"{places('forward')}: the forward model '{block.forward}' is {broken}")
         return _read(block, path, text, places)
     except InputError as error:
         raise InputError(places.located(str(error))) from None
