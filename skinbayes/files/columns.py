@@ -233,7 +233,7 @@ def _identify(header: str, cells: list[str]) -> tuple[str, Quantity | None, str 
     quantity = vocabulary.lookup(name)
     if quantity is None:
         if unit is None:
-            _refuse_quantity(name, cells)
+            refuse_quantity(name, cells)
         elif unit == "":
             raise InputError(f"column {quoted(name)} has no unit; expected one, or no brackets for labels")
         return name, None, unit
@@ -248,7 +248,7 @@ def _identify(header: str, cells: list[str]) -> tuple[str, Quantity | None, str 
     return name, quantity, unit
 
 
-def _refuse_quantity(name: str, cells: list[str]) -> None:
+def refuse_quantity(name: str, cells: list[str]) -> None:
     """Refuse a header without unit that names a quantity otherwise, or, above numbers only, nearly so."""
     if name in vocabulary.LABELS:
         return
