@@ -73,8 +73,6 @@ def fit(
     from skinbayes.problem.rows import data_notes
 
     problem = load_problem(model, data=data)
-    for note in data_notes(problem):
-        say(note, err=True)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     try:
         with fit_progress() as (count, progress):
@@ -88,6 +86,8 @@ def fit(
             err=True,
         )
         return EXIT_INTERRUPTED
+    for note in data_notes(problem):
+        say(note, err=True)
     page = None
     if with_report:
         from skinbayes.cli.page import write_page

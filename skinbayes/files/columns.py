@@ -107,8 +107,8 @@ def read_labels(
     """One column of labels, shape (n_rows,), on one line in Unicode normal form C; unusable ones are noted in ``problems``."""
     cells = [" ".join(normalize("NFC", cell).splitlines()) for cell in table.column(position)]
     for row, cell in enumerate(cells):
-        if cell == "" and missing == "keep":
-            continue
+        if cell == "" and (missing == "keep" or name not in vocabulary.LABELS):
+            continue  # a model that uses the column asks for values
         if cell == "" or len(cell) > _LONGEST_LABEL or not cell.isprintable():
             found = "an empty cell" if cell == "" else quoted(cell, _LONGEST_SHOWN)
             problems.add(
@@ -233,7 +233,7 @@ def _identify(header: str, cells: list[str]) -> tuple[str, Quantity | None, str 
     quantity = vocabulary.lookup(name)
     if quantity is None:
         if unit is None:
-            _refuse_quantity(name, cells)
+            refuse_quantity(name, cells)
         elif unit == "":
             raise InputError(f"column {quoted(name)} has no unit; expected one, or no brackets for labels")
         return name, None, unit
@@ -248,7 +248,7 @@ def _identify(header: str, cells: list[str]) -> tuple[str, Quantity | None, str 
     return name, quantity, unit
 
 
-def _refuse_quantity(name: str, cells: list[str]) -> None:
+def refuse_quantity(name: str, cells: list[str]) -> None:
     """Refuse a header without unit that names a quantity otherwise, or, above numbers only, nearly so."""
     if name in vocabulary.LABELS:
         return
@@ -258,6 +258,8 @@ def _refuse_quantity(name: str, cells: list[str]) -> None:
         )
     numbers = [bool(_NUMERIC.fullmatch(cell)) for cell in cells if not _is_missing(cell)]
     near = bool(numbers) and all(numbers)
+    if len(name) == 1 and not near:  # a letter above words is no symbol
+        return
     bases = [base for base, _ in _split_units(name)]
     quantities = [known for known in known_names() if known not in vocabulary.LABELS]
     if any(vocabulary.meant(base, quantities, near) for base in bases):

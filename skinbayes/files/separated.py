@@ -214,5 +214,9 @@ def with_points(
     if point or (",", False) not in seen:
         return rows
     return [
-        tuple(cell.replace(",", ".") if i in numeric else cell for i, cell in enumerate(row)) for row in rows
+        tuple(
+            cell.replace(",", ".") if i in numeric and _FRACTION.fullmatch(cell.strip()) else cell
+            for i, cell in enumerate(row)
+        )
+        for row in rows
     ]

@@ -86,10 +86,11 @@ class InputPlan:
 
 
 def label_meant(column: str, labels: Collection[str]) -> str:
-    """A sentence on the label column that may stand for one that is not there, or an empty string."""
+    """A sentence on the label columns that there are instead of one that is not, or on the one that may be meant."""
     said = suggestions(column, labels)
     other = next((label for label in labels if meant(label, [column])), None)
-    return said or ("" if other is None else f" Did you mean '{other}'?")
+    listed = ", ".join(labels) or "none"
+    return said or (f" Label columns: {listed}" if other is None else f" Did you mean '{other}'?")
 
 
 def plan_inputs(

@@ -13,7 +13,7 @@ from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
 from skinbayes.problem.rheology import REPLACED
 from skinbayes.units import split_header
-from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, suggestions
 
 
 @dataclass(frozen=True)
@@ -136,6 +136,11 @@ def _labels(spec: ModelSpec) -> dict[str, str]:
         reasons.setdefault(str(scale.level), []).append("rows with the same one share an effect")
     for column, kept in spec.rows.items():
         label_column(column, f"{spec.path}: data.rows")
+        own = _own_columns(spec)
+        if own and column not in own:
+            raise InputError(
+                f"{spec.path}: data.rows: the data of the model have no column '{column}'.{suggestions(column, own)}"
+            )
         reasons.setdefault(column, []).append(f"the model takes the rows with {', '.join(kept)}")
     if spec.rheology_by is not None:
         reasons.setdefault(spec.rheology_by, []).append("each has its flow curve")

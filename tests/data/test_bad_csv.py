@@ -54,6 +54,10 @@ CORPUS: dict[str, tuple[bytes | str, tuple[str, ...]]] = {
         HEADER.replace(",", ";") + "A;1.000;2\nA;2;0,5\n",
         ("'1.000' (line 2)", "'0,5' (line 3)", "one decimal separator"),
     ),
+    "semicolons, decimal comma and thousands": (
+        HEADER.replace(",", ";") + "A;1.234,5;0,5\n",
+        ("line 2", "'1.234,5'", "separated thousands"),
+    ),
     "two separators": ("a;b [N],c [1]\n1;2,3\n1,2;3\n", ("line 1", "commas and semicolons", "double quotes")),
     "quotes do not match": (HEADER + '"A,1,0.5\n', ("line 2", "quotation marks")),
     "column twice": (

@@ -30,6 +30,7 @@ def test_a_column_without_unit_holds_labels(name: str, cells: tuple[str, str], t
 
 @pytest.mark.parametrize("name", ["load", "friction_coefficient", "mu_sd", "Temp (C)", "weight", "CoF.mean"])
 def test_a_quantity_without_unit_is_no_label(name: str, tmp_path: Path) -> None:
+    assert read(tmp_path, "a,normal_force [N]\nx,1\n").labels("a") == ("x",)
     for cell in ("1", "high"):
         with pytest.raises(InputError, match=r"write '|Write '|write '|has no unit"):
             read(tmp_path, f"{name},sphere_radius [mm]\n{cell},8\n")
@@ -90,7 +91,8 @@ def test_the_number_of_measurements_has_two_names(tmp_path: Path) -> None:
 
 def test_missing_values_are_kept_where_asked(tmp_path: Path) -> None:
     text = "person,sex,normal_force [N],skin_hydration [1]\nA,m,1,\nB,,2,40\nC,f,,30\nD,f,4,20\n"
-    with pytest.raises(InputError, match=r"3 problems(.|\n)*missing = \"drop\""):
+    assert read(tmp_path, "note,normal_force [N]\n,1\na,2\n").labels("note") == ("", "a")
+    with pytest.raises(InputError, match=r"2 problems(.|\n)*missing = \"drop\""):
         read(tmp_path, text)
     data = read(tmp_path, text, missing="keep")
     assert data.n_rows == 4 and data.labels("sex") == ("m", "", "f")
