@@ -8,7 +8,7 @@ from skinbayes.arrays import ArrayLike, FloatArray
 
 
 def friction_coefficient(
-    frictional_shear_stress: ArrayLike, relative_contact_area: ArrayLike, nominal_pressure: ArrayLike
+    frictional_shear_stress: ArrayLike, relative_contact_area: ArrayLike, *, nominal_pressure: ArrayLike
 ) -> FloatArray:
     """Friction coefficient at a constant frictional shear stress, ``μ = σ_f A/(A0 p0)`` (Sect. 4 of the paper).
 
@@ -33,7 +33,7 @@ def friction_coefficient(
 
     Examples
     --------
-    >>> print(f"{friction_coefficient(15e6, 6.48133e-4, 6830.0):.4f}")
+    >>> print(f"{friction_coefficient(15e6, 6.48133e-4, nominal_pressure=6830.0):.4f}")
     1.4234
     """
     shear, area, pressure = (

@@ -17,7 +17,7 @@ SATURATION = 10.0
 _DEEP = 400.0  # of qd, where e^(−2qd) is 0 in floating point
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class LayeredSkin:
     """Stratum corneum bonded to deeper tissue, a layer on a half-space (Fig. 5 of the paper).
 
@@ -38,7 +38,13 @@ class LayeredSkin:
 
     Examples
     --------
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(
+    ...     young_modulus_layer=7e6,
+    ...     young_modulus_bulk=20e3,
+    ...     poisson_ratio_layer=0.5,
+    ...     poisson_ratio_bulk=0.5,
+    ...     layer_thickness=20e-6,
+    ... )
     >>> print(f"{wet.layer_thickness:.0e}")
     2e-05
     """
@@ -76,7 +82,15 @@ def validate_skin(skin: LayeredSkin) -> None:
 
     Examples
     --------
-    >>> validate_skin(LayeredSkin(7e6, -20e3, 0.5, 0.5, 20e-6))
+    >>> validate_skin(
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=-20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     )
+    ... )
     Traceback (most recent call last):
         ...
     skinbayes.errors.InputError: young_modulus_bulk is -20000 Pa, but must be a finite number > 0 Pa.
@@ -192,7 +206,13 @@ def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(
+    ...     young_modulus_layer=7e6,
+    ...     young_modulus_bulk=20e3,
+    ...     poisson_ratio_layer=0.5,
+    ...     poisson_ratio_bulk=0.5,
+    ...     layer_thickness=20e-6,
+    ... )
     >>> print(surface_response(wet, [0.0, 1e5, 1e9]).round(6))
     [350.         1.703063   1.      ]
     """
@@ -220,7 +240,13 @@ def effective_modulus(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(
+    ...     young_modulus_layer=7e6,
+    ...     young_modulus_bulk=20e3,
+    ...     poisson_ratio_layer=0.5,
+    ...     poisson_ratio_bulk=0.5,
+    ...     layer_thickness=20e-6,
+    ... )
     >>> print(f"{effective_modulus(wet, 0.0):.1f} {effective_modulus(wet, 1e9):.0f}")
     26666.7 9333333
     """

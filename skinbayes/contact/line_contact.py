@@ -42,7 +42,7 @@ class EquivalentCylinder(NamedTuple):
 
 
 def line_contact(
-    load_per_length: ArrayLike, cylinder_radius: ArrayLike, reduced_modulus: ArrayLike
+    load_per_length: ArrayLike, cylinder_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> HertzLine:
     """Smooth elastic contact of a rigid cylinder with a half-space (second line above Eq. 9 of the paper).
 
@@ -69,7 +69,7 @@ def line_contact(
 
     Examples
     --------
-    >>> contact = line_contact(21.92, 4.533e-3, 20e3 / 0.75)
+    >>> contact = line_contact(21.92, 4.533e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{contact.half_width:.3e} m, {contact.maximum_pressure:.0f} Pa")
     2.178e-03 m, 6407 Pa
     """
@@ -84,7 +84,7 @@ def line_contact(
 
 
 def cylinder_of_sphere(
-    normal_force: ArrayLike, sphere_radius: ArrayLike, reduced_modulus: ArrayLike
+    normal_force: ArrayLike, sphere_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> EquivalentCylinder:
     """Cylinder that slides on a lubricated elastic solid nearly like a sphere does (Eq. 9 of the paper).
 
@@ -112,16 +112,20 @@ def cylinder_of_sphere(
 
     Examples
     --------
-    >>> cylinder = cylinder_of_sphere(0.2, 8e-3, 20e3 / 0.75)
+    >>> cylinder = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     4.533e-03 m, 21.92 N/m
     """
-    sphere = sphere_contact(normal_force, sphere_radius, reduced_modulus)
-    return cylinder_of_contact(sphere.contact_radius, sphere.mean_pressure, reduced_modulus)
+    sphere = sphere_contact(normal_force, sphere_radius, reduced_modulus=reduced_modulus)
+    return cylinder_of_contact(
+        effective_contact_radius=sphere.contact_radius,
+        mean_pressure=sphere.mean_pressure,
+        reduced_modulus=reduced_modulus,
+    )
 
 
 def cylinder_of_contact(
-    effective_contact_radius: ArrayLike, mean_pressure: ArrayLike, reduced_modulus: ArrayLike
+    effective_contact_radius: ArrayLike, mean_pressure: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> EquivalentCylinder:
     """Cylinder with a given mean Hertz pressure whose strip squeezes out fluid like a disk (conditions of Eq. 9).
 
@@ -143,7 +147,9 @@ def cylinder_of_contact(
 
     Examples
     --------
-    >>> cylinder = cylinder_of_contact(3.5569e-3, 5031.9, 20e3 / 0.75)
+    >>> cylinder = cylinder_of_contact(
+    ...     effective_contact_radius=3.5569e-3, mean_pressure=5031.9, reduced_modulus=20e3 / 0.75
+    ... )
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     4.533e-03 m, 21.92 N/m
     """

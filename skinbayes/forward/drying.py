@@ -33,12 +33,12 @@ def _dried(
     curve = drying_curve(
         time,
         inputs["wetting_time"],
-        initial_film_of(inputs),
-        evaporation_rate_of(inputs),
-        film_contact_of(inputs, tables, closure, table),
-        inputs["frictional_shear_stress"],
-        nominal_pressure_of(inputs),
-        inputs["film_spread"],
+        initial_film=initial_film_of(inputs),
+        evaporation_rate=evaporation_rate_of(inputs),
+        contact=film_contact_of(inputs, tables, closure, table),
+        frictional_shear_stress=inputs["frictional_shear_stress"],
+        nominal_pressure=nominal_pressure_of(inputs),
+        film_spread=inputs["film_spread"],
     )
     return {name: np.asarray(getattr(curve, name)) for name in OBSERVABLES}
 

@@ -33,11 +33,11 @@ def _features(
     features = drying_features(
         inputs["wetting_time"],
         initial_film_of(inputs),
-        evaporation_rate_of(inputs),
-        film_contact_of(inputs, tables, closure, table),
-        inputs["frictional_shear_stress"],
-        nominal_pressure_of(inputs),
-        inputs["film_spread"],
+        evaporation_rate=evaporation_rate_of(inputs),
+        contact=film_contact_of(inputs, tables, closure, table),
+        frictional_shear_stress=inputs["frictional_shear_stress"],
+        nominal_pressure=nominal_pressure_of(inputs),
+        film_spread=inputs["film_spread"],
     )
     return {name: np.asarray(getattr(features, name)) for name in OBSERVABLES}
 

@@ -141,12 +141,21 @@ def prepare(
 
     def build(unfinished: Unfinished) -> Stored:
         table = build_film_table(
-            held, spectrum, layer, bulk, gamma, processes=cores, progress=progress, largest_strain=strain, kept=unfinished
+            held, spectrum, poisson_ratio_layer=layer, poisson_ratio_bulk=bulk, area_correction=gamma, processes=cores, progress=progress, largest_strain=strain, kept=unfinished
         )  # fmt: skip
         return table.to_arrays()
 
     stored = cached(
-        "stribeck", film_table_key(held, spectrum, layer, bulk, gamma, largest_strain=strain), build
+        "stribeck",
+        film_table_key(
+            held,
+            spectrum,
+            poisson_ratio_layer=layer,
+            poisson_ratio_bulk=bulk,
+            area_correction=gamma,
+            largest_strain=strain,
+        ),
+        build,
     )
     table = FilmTable.from_arrays(*stored)
     tabulated = TabulatedStribeck(table, names)

@@ -12,7 +12,7 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation import mean_separation
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _COUNT = 160
@@ -79,7 +79,7 @@ class AsperityLaw:
 
 
 def asperity_law(
-    spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: ArrayLike = AREA_CORRECTION
+    spectrum: PowerSpectrum, skin: LayeredSkin, *, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityLaw:
     """Asperity law of a rough layered surface, from its mean separation (Sect. 5 and Sect. 6.2 of the paper).
 
@@ -107,15 +107,24 @@ def asperity_law(
     --------
     >>> import numpy as np
     >>> from skinbayes.roughness import named_surface
-    >>> law = asperity_law(named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6))
+    >>> law = asperity_law(
+    ...     named_surface("paper_reference"),
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ... )
     >>> print(law(np.array([14e-6]))[0].round(0))
     [6290.]
     """
-    return law_of_table(*asperity_table(spectrum, skin, area_correction))
+    return law_of_table(*asperity_table(spectrum, skin, area_correction=area_correction))
 
 
 def asperity_table(
-    spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: ArrayLike = AREA_CORRECTION
+    spectrum: PowerSpectrum, skin: LayeredSkin, *, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityTable:
     """Mean separations and asperity pressures of many surfaces at once (Sect. 5 and Sect. 6.2 of the paper).
 
@@ -136,17 +145,26 @@ def asperity_table(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> table = asperity_table(named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6))
+    >>> table = asperity_table(
+    ...     named_surface("paper_reference"),
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ... )
     >>> print(table.separation.shape, f"{table.separation[-1]:.2e} m at {np.exp(table.log_pressure[-1]):.0e} Pa")
     (160,) 3.64e-04 m at 2e-07 Pa
     """
-    scale = np.log(np.asarray(stress_variance(spectrum, skin))) / 2
+    scale = np.log(np.asarray(twice_stress_variance(spectrum, skin))) / 2
     gamma = np.asarray(area_correction, dtype=np.float64)
     batch = np.broadcast_shapes(scale.shape, gamma.shape)
     log_pressure = (
         np.linspace(np.log(_HIGHEST), np.log(_LOWEST), _COUNT) + np.broadcast_to(scale, batch)[..., None]
     )
-    separation = np.asarray(mean_separation(np.exp(log_pressure), spectrum, skin, gamma))
+    separation = np.asarray(mean_separation(np.exp(log_pressure), spectrum, skin=skin, area_correction=gamma))
     return AsperityTable(separation, log_pressure)
 
 

@@ -98,7 +98,16 @@ def stribeck_curve_of_liquid(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    >>> wet, surface = (
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ...     named_surface("paper_reference"),
+    ... )
     >>> honey = FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])
     >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, sphere_radius=8e-3, normal_force=0.2,
     ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
@@ -113,8 +122,8 @@ def stribeck_curve_of_liquid(
         )
     liquids = liquid_rows([flow_curve] * speed.size)
     modulus = float(reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk))
-    cylinder = cylinder_of_sphere(normal_force, sphere_radius, modulus)
-    law = asperity_law(spectrum, skin, area_correction)
+    cylinder = cylinder_of_sphere(normal_force, sphere_radius, reduced_modulus=modulus)
+    law = asperity_law(spectrum, skin, area_correction=area_correction)
 
     def shear_rate(log_viscosity: FloatArray) -> FloatArray:
         """ln v/u."""

@@ -116,7 +116,7 @@ def lubricated_films(
     1.94e-04 m, 0.138
     """
     product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
-    hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus)
+    hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus=reduced_modulus)
     height = float(hertz.half_width**2 / cylinder_radius)
     per_product = lubrication_number_per_product(cylinder_radius, hertz)
     wanted = per_product * product

@@ -24,7 +24,7 @@ SLOWEST, FASTEST = -1.3, 1.35
 """Ends of the speeds in the unit of a material. Asperities carry half of the load at 0 and 1e-3 of it at 1."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FilmTable:
     """Films of a rough ball as functions of λ and the axes: Chebyshev polynomials of the axes, cubic splines of ln λ.
 

@@ -71,6 +71,7 @@ class TabulatedFriction(NamedTuple):
 def tabulated_friction(
     table: FilmTable,
     speed_viscosity_product: ArrayLike,
+    *,
     parameters: Mapping[str, ArrayLike],
     frictional_shear_stress: ArrayLike,
     velocity_shift_factor: ArrayLike = 1.0,
@@ -111,7 +112,11 @@ def tabulated_friction(
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
     >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
-    >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], ball, 15e6).friction_coefficient.round(3))
+    >>> print(
+    ...     tabulated_friction(
+    ...         table, [1e-6, 1e-3, 2e-2], parameters=ball, frictional_shear_stress=15e6
+    ...     ).friction_coefficient.round(3)
+    ... )
     [1.423 0.915 0.109]
     """
     arguments = _arguments(
@@ -137,6 +142,7 @@ def tabulated_friction(
 def tabulated_friction_of_liquids(
     table: FilmTable,
     sliding_speed: ArrayLike,
+    *,
     liquids: LiquidRows,
     parameters: Mapping[str, ArrayLike],
     frictional_shear_stress: ArrayLike,
@@ -189,7 +195,9 @@ def tabulated_friction_of_liquids(
     >>> ranges = {name: (value, value) for name, value in ball.items()}
     >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
     >>> liquids = liquid_rows([FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])] * 2)
-    >>> friction, viscosity = tabulated_friction_of_liquids(table, [1e-3, 1e-2], liquids, ball, 15e6)
+    >>> friction, viscosity = tabulated_friction_of_liquids(
+    ...     table, [1e-3, 1e-2], liquids=liquids, parameters=ball, frictional_shear_stress=15e6
+    ... )
     >>> print(friction.friction_coefficient.round(3), viscosity.viscosity.round(1), viscosity.unmeasured)
     [0.108 0.325] [25.  24.6] [False False]
     """

@@ -13,7 +13,7 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.gaps import gap_distribution
 from skinbayes.contact.layered import LayeredSkin
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.lubrication.flow_factors import FrictionFactors
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
@@ -143,6 +143,7 @@ class TabulatedFlowFactors:
 def tabulated_flow_factors(
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
+    *,
     area_correction: float = AREA_CORRECTION,
     smallest_gap: float | None = None,
 ) -> TabulatedFlowFactors:
@@ -168,13 +169,22 @@ def tabulated_flow_factors(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> factors = tabulated_flow_factors(named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6))
+    >>> factors = tabulated_flow_factors(
+    ...     named_surface("paper_reference"),
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ... )
     >>> print(factors.flow(np.array([14e-6]))[0].round(2))
     [0.73]
     """
     least = float(rms_height(spectrum)) / 100 if smallest_gap is None else smallest_gap
-    scale = float(np.sqrt(stress_variance(spectrum, skin)))
-    gaps = gap_distribution(_PRESSURES * scale, spectrum, skin, area_correction)
+    scale = float(np.sqrt(twice_stress_variance(spectrum, skin)))
+    gaps = gap_distribution(_PRESSURES * scale, spectrum, skin=skin, area_correction=area_correction)
     mean = np.asarray(gaps.mean)
     widest = float((gaps.location + 6 * gaps.width).max())
     edges = np.geomspace(least, widest, _GAPS)

@@ -42,6 +42,7 @@ class Rheology(Protocol):
 def thinned_viscosity(
     low_shear_viscosity: ArrayLike,
     shear_rate: ArrayLike,
+    *,
     scale: ArrayLike = SILICONE_SCALE,
     exponent: ArrayLike = SILICONE_EXPONENT,
 ) -> FloatArray:
@@ -92,6 +93,7 @@ class ShearThinning:
     """
 
     low_shear_viscosity: float
+    _: KW_ONLY
     scale: float = SILICONE_SCALE
     exponent: float = SILICONE_EXPONENT
 

@@ -13,7 +13,7 @@ from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.lubrication.asperities import AsperityTable, asperity_table, law_of_table
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.flow_factors import FlowFactors
@@ -43,7 +43,7 @@ SILENT = {
 """Flags where there is no prediction, and what they say."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class StribeckCurve:
     """Friction of a lubricated ball and what it consists of; all but ``strain`` have the batch shape plus that of the speeds.
 
@@ -159,7 +159,16 @@ def stribeck_curve(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    >>> wet, surface = (
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ...     named_surface("paper_reference"),
+    ... )
     >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], sphere_radius=8e-3, normal_force=0.2,
     ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3))
@@ -170,14 +179,14 @@ def stribeck_curve(
     """
     given = np.asarray(speed_viscosity_product, dtype=np.float64)
     products = np.atleast_1d(given)
-    variance = stress_variance(spectrum, skin)
+    twice_variance = twice_stress_variance(spectrum, skin)
     modulus = reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk)
-    table = asperity_table(spectrum, skin, area_correction)
+    table = asperity_table(spectrum, skin, area_correction=area_correction)
     inputs = np.broadcast_arrays(
         *(
             np.asarray(x, dtype=np.float64)[..., None]
             for x in (
-                sphere_radius, normal_force, frictional_shear_stress, area_correction, velocity_shift_factor, variance, modulus,
+                sphere_radius, normal_force, frictional_shear_stress, area_correction, velocity_shift_factor, twice_variance, modulus,
             )
         ),
         table.separation[..., :1],
@@ -217,7 +226,7 @@ class _Case(NamedTuple):
     shear_stress: float
     area_correction: float
     shift: float
-    variance: float
+    twice_variance: float
     modulus: float
 
 
@@ -232,8 +241,8 @@ def _one_curve(
     largest_strain: float,
 ) -> dict[str, Any]:
     """The fields of a `StribeckCurve` for one set of parameters."""
-    cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, case.modulus)
-    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, case.modulus)
+    cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, reduced_modulus=case.modulus)
+    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, reduced_modulus=case.modulus)
     load, strain = float(cylinder.load_per_length), float(line.half_width / cylinder.cylinder_radius)
     shifted = products * case.shift
     with np.errstate(invalid="ignore"):
@@ -268,7 +277,9 @@ def _one_curve(
             rheology=rheology,
             nodes=nodes,
         )
-        area = relative_contact_area(films.asperity_pressure, case.variance, case.area_correction)
+        area = relative_contact_area(
+            films.asperity_pressure, case.twice_variance, area_correction=case.area_correction
+        )
         boundary = case.shear_stress * (area @ films.load_weight) / load
         for name in names:
             result[name][solved] = boundary if name == "boundary" else getattr(films, name)

@@ -53,7 +53,12 @@ class Bridged(NamedTuple):
         if self.table is not None:
             source = self.source
             groups = skin_groups(
-                self.load, self.pull, self.height, source.spectrum, source.skin, source.area_correction
+                self.load,
+                self.pull,
+                height=self.height,
+                spectrum=source.spectrum,
+                skin=source.skin,
+                area_correction=source.area_correction,
             )
             known = self.table.covers(groups) & (self.pull > 0)
             if known.any():
@@ -64,7 +69,10 @@ class Bridged(NamedTuple):
         if rest.size:
             source = self.source.select(rest)
             separation[rest] = mean_separation(
-                self.load[rest, None], source.spectrum, source.skin, source.area_correction
+                self.load[rest, None],
+                source.spectrum,
+                skin=source.skin,
+                area_correction=source.area_correction,
             )[:, 0]
         return separation, known, curve
 

@@ -35,7 +35,13 @@ class GapSource:
 
     def at(self, pressure: FloatArray) -> tuple[Mixture, FloatArray]:
         """Components, shape ``(B, K, n)``, and mean separation (m), shape ``(B, K)``, at pressures (Pa) of shape ``(B, K)``."""
-        gaps = gap_distribution(pressure, self.spectrum, self.skin, self.area_correction, self.closure)
+        gaps = gap_distribution(
+            pressure,
+            self.spectrum,
+            skin=self.skin,
+            area_correction=self.area_correction,
+            closure=self.closure,
+        )
         # a component without weight, as all are in complete contact, may have any place
         place = np.where(np.isfinite(gaps.location), gaps.location, 0.0)
         width = np.where(gaps.width > 0, gaps.width, gaps.mean[..., None])
@@ -57,7 +63,9 @@ def map_spectrum(spectrum: PowerSpectrum, change: Callable[[FloatArray], FloatAr
     if isinstance(spectrum, SelfAffineSpectrum):
         return SelfAffineSpectrum(*_changed(spectrum, change))
     if isinstance(spectrum, TabulatedSpectrum) and np.ndim(spectrum.scale):
-        return TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, change(np.asarray(spectrum.scale)))
+        return TabulatedSpectrum(
+            spectrum.wavevector, spectrum.node_power, scale=change(np.asarray(spectrum.scale))
+        )
     return spectrum
 
 

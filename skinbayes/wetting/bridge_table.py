@@ -42,7 +42,7 @@ _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 Groups = Mapping[str, FloatArray]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class BridgeTable:
     """Bridges of skins in a box of dimensionless groups, each a curve along the Kelvin length.
 
@@ -91,6 +91,7 @@ class BridgeTable:
 def skin_groups(
     pressure: FloatArray,
     pull: FloatArray,
+    *,
     height: FloatArray,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
@@ -121,7 +122,13 @@ def skin_groups(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> skin = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> skin = LayeredSkin(
+    ...     young_modulus_layer=7e6,
+    ...     young_modulus_bulk=20e3,
+    ...     poisson_ratio_layer=0.5,
+    ...     poisson_ratio_bulk=0.5,
+    ...     layer_thickness=20e-6,
+    ... )
     >>> arguments = (np.array([x]) for x in (6830.0, 0.0845, 22.4e-6))
     >>> groups = skin_groups(*arguments, named_surface("paper_reference"), skin, np.array(0.42))
     >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["pull"].round(3))
@@ -147,6 +154,7 @@ def skin_groups(
 def bridge_table(
     low: Mapping[str, float],
     high: Mapping[str, float],
+    *,
     depth: float,
     spectrum: PowerSpectrum | None = None,
     most: int = 4000,
@@ -183,11 +191,17 @@ def bridge_table(
     Layers from 6 to 8 MPa, down to a film of about 0.1 µm:
 
     >>> from skinbayes.roughness import named_surface
-    >>> skins = LayeredSkin(np.array([6e6, 8e6]), 20e3, 0.5, 0.5, 20e-6)
+    >>> skins = LayeredSkin(
+    ...     young_modulus_layer=np.array([6e6, 8e6]),
+    ...     young_modulus_bulk=20e3,
+    ...     poisson_ratio_layer=0.5,
+    ...     poisson_ratio_bulk=0.5,
+    ...     layer_thickness=20e-6,
+    ... )
     >>> same = (np.full(2, x) for x in (6830.0, 0.0845, 22.4e-6))
     >>> groups = skin_groups(*same, named_surface("paper_reference"), skins, np.array(0.42))
     >>> low, high = ({name: end(x) for name, x in groups.items()} for end in (np.min, np.max))
-    >>> table = bridge_table(low, high, 6830.0 / 20e3 / 1e-7)
+    >>> table = bridge_table(low, high, depth=6830.0 / 20e3 / 1e-7)
     >>> print(dict(table.counts), table.error < 1e-3)
     {'stiffness': 2, 'load': 3} True
     """
@@ -263,7 +277,9 @@ def _build(
         moved = np.moveaxis(parts, i, 0)
         parts = np.moveaxis(coefficients(moved.reshape(1, count, -1)).reshape(moved.shape), 0, i)
     parts = np.ascontiguousarray(parts.reshape(total, -1))
-    return BridgeTable(dict(low), dict(high), dict(counts), depth, parts, np.nan)
+    return BridgeTable(
+        low=dict(low), high=dict(high), counts=dict(counts), depth=depth, parts=parts, error=np.nan
+    )
 
 
 def _solvable(
@@ -329,23 +345,23 @@ def _curves(
     surface: PowerSpectrum
     if isinstance(spectrum, TabulatedSpectrum):
         scale = spectrum.scale * (height / rms_height(spectrum)) ** 2
-        surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale)
+        surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale=scale)
     else:
         waves = (np.exp(given[name]) for name in SURFACE_GROUPS[1:])
         surface = SelfAffineSpectrum(height, given["hurst_exponent"], *waves)
     skin = LayeredSkin(
-        _BULK * np.exp(given["stiffness"]),
-        bulk,
-        given["poisson_ratio_layer"],
-        given["poisson_ratio_bulk"],
-        np.exp(given["layer_thickness"]),
+        young_modulus_layer=_BULK * np.exp(given["stiffness"]),
+        young_modulus_bulk=bulk,
+        poisson_ratio_layer=given["poisson_ratio_layer"],
+        poisson_ratio_bulk=given["poisson_ratio_bulk"],
+        layer_thickness=np.exp(given["layer_thickness"]),
     )
     pressing = _pressing(given)
     load = _BULK * _HEIGHT * np.exp(pressing)
     pull = np.expm1(given["pull"]) * _PULL * np.square(load) / _BULK
     gamma = np.ascontiguousarray(given["area_correction"])
     with np.errstate(all="ignore"):
-        flooded = np.asarray(mean_separation(load[:, None], surface, skin, gamma))[:, 0]
+        flooded = np.asarray(mean_separation(load[:, None], surface, skin=skin, area_correction=gamma))[:, 0]
         source = GapSource(surface, skin, gamma, "gaussian")
         end = _end(depth, np.log(flooded / _HEIGHT), pressing)
         return solve_curve(source, load, pull, flooded, flooded / 10, end), load, flooded

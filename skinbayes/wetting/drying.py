@@ -60,6 +60,7 @@ class DryingFeatures(NamedTuple):
 def drying_curve(
     time: ArrayLike,
     wetting_time: ArrayLike,
+    *,
     initial_film: ArrayLike,
     evaporation_rate: ArrayLike,
     contact: FilmContact,
@@ -99,9 +100,35 @@ def drying_curve(
     >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> from skinbayes.wetting import film_contact
-    >>> skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    >>> contact = film_contact(6830.0, surface, skin, 0.0727, radians(80.0), 0.0, 1e9, 50e6)
-    >>> curve = drying_curve([0.0, 200.0, 500.0, 600.0], 30.0, 90e-6, 1.743e-7, contact, 15e6, 6830.0)
+    >>> skin, surface = (
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ...     named_surface("paper_reference"),
+    ... )
+    >>> contact = film_contact(
+    ...     6830.0,
+    ...     surface,
+    ...     skin=skin,
+    ...     surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0),
+    ...     contact_angle_counterface=0.0,
+    ...     young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6,
+    ... )
+    >>> curve = drying_curve(
+    ...     [0.0, 200.0, 500.0, 600.0],
+    ...     30.0,
+    ...     initial_film=90e-6,
+    ...     evaporation_rate=1.743e-7,
+    ...     contact=contact,
+    ...     frictional_shear_stress=15e6,
+    ...     nominal_pressure=6830.0,
+    ... )
     >>> print(curve.friction_coefficient.round(3))
     [0.3   1.423 2.28  0.3  ]
     """
@@ -118,7 +145,9 @@ def drying_curve(
         low, high = contact.film[..., :1], contact.film[..., -1:]
         place = mean / width
         film_left = mean * ndtr(place) + width * np.exp(-0.5 * np.square(place)) / np.sqrt(2 * np.pi)
-        friction = friction_coefficient(np.asarray(frictional_shear_stress)[..., None], area, load)
+        friction = friction_coefficient(
+            np.asarray(frictional_shear_stress)[..., None], area, nominal_pressure=load
+        )
         found = (
             np.where(wet, film_left, 0.0 * mean),
             area,
@@ -132,6 +161,7 @@ def drying_curve(
 def drying_features(
     wetting_time: ArrayLike,
     initial_film: ArrayLike,
+    *,
     evaporation_rate: ArrayLike,
     contact: FilmContact,
     frictional_shear_stress: ArrayLike,
@@ -170,9 +200,34 @@ def drying_features(
     >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> from skinbayes.wetting import film_contact
-    >>> skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    >>> contact = film_contact(6830.0, surface, skin, 0.0727, radians(80.0), 0.0, 1e9, 50e6)
-    >>> features = drying_features(30.0, 90e-6, 1.743e-7, contact, 15e6, 6830.0)
+    >>> skin, surface = (
+    ...     LayeredSkin(
+    ...         young_modulus_layer=7e6,
+    ...         young_modulus_bulk=20e3,
+    ...         poisson_ratio_layer=0.5,
+    ...         poisson_ratio_bulk=0.5,
+    ...         layer_thickness=20e-6,
+    ...     ),
+    ...     named_surface("paper_reference"),
+    ... )
+    >>> contact = film_contact(
+    ...     6830.0,
+    ...     surface,
+    ...     skin=skin,
+    ...     surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0),
+    ...     contact_angle_counterface=0.0,
+    ...     young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6,
+    ... )
+    >>> features = drying_features(
+    ...     30.0,
+    ...     90e-6,
+    ...     evaporation_rate=1.743e-7,
+    ...     contact=contact,
+    ...     frictional_shear_stress=15e6,
+    ...     nominal_pressure=6830.0,
+    ... )
     >>> print(f"{features.peak_time:.1f} {features.peak_friction:.3f} {features.peak_width:.1f} {features.dry_time:.1f}")
     513.2 2.319 66.5 546.4
     """
@@ -208,7 +263,8 @@ def drying_features(
         fall = falling_root(lambda x: -above(x), edge, np.minimum(edge + (high - low) / (_SEARCH - 1), peak))
         there = height > plateau * (1 + _NO_PEAK)
         friction = [
-            friction_coefficient(frictional_shear_stress, x, nominal_pressure) for x in (height, plateau, dry)
+            friction_coefficient(frictional_shear_stress, x, nominal_pressure=nominal_pressure)
+            for x in (height, plateau, dry)
         ]
         return DryingFeatures(
             np.where(there, start + (film - peak) / rate, np.nan)[()],

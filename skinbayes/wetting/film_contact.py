@@ -12,8 +12,8 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
     LayeredSkin,
-    stress_variance,
     total_contact_area,
+    twice_stress_variance,
 )
 from skinbayes.contact.gaps import CLOSURES
 from skinbayes.errors import InputError
@@ -34,7 +34,7 @@ _FILMS, _POINTS, _MODULI = 32, 256, 12
 _NO_SPREAD = 1e-12  # m
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FilmContact:
     """Contact area against the local thickness of the film: dry below the first film, flooded from the last on.
 
@@ -83,6 +83,7 @@ class FilmContact:
 def film_contact(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
+    *,
     skin: LayeredSkin,
     surface_tension: ArrayLike,
     contact_angle_skin: ArrayLike,
@@ -140,9 +141,22 @@ def film_contact(
     --------
     >>> from math import radians
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(
+    ...     young_modulus_layer=7e6,
+    ...     young_modulus_bulk=20e3,
+    ...     poisson_ratio_layer=0.5,
+    ...     poisson_ratio_bulk=0.5,
+    ...     layer_thickness=20e-6,
+    ... )
     >>> contact = film_contact(
-    ...     6830.0, named_surface("paper_reference"), wet, 0.0727, radians(80.0), 0.0, 1e9, 50e6
+    ...     6830.0,
+    ...     named_surface("paper_reference"),
+    ...     skin=wet,
+    ...     surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0),
+    ...     contact_angle_counterface=0.0,
+    ...     young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6,
     ... )
     >>> print(f"{contact.dry_area:.3e} {contact.area.max():.3e} {contact.area[-1]:.3e}")
     1.366e-04 1.056e-03 6.481e-04
@@ -202,7 +216,9 @@ def film_contact(
         stiff = bridged.with_layer(dry)
         dry_area = np.exp(_log_area(stiff.source, limit, load[:, None]))[:, 0]
         grid, fine = (np.where(np.isfinite(x), x, np.nan).reshape(*batch, _POINTS) for x in (grid, fine))
-        return FilmContact(grid, fine, np.broadcast_to(dry_area, load.shape).reshape(batch)[()])
+        return FilmContact(
+            film=grid, area=fine, dry_area=np.broadcast_to(dry_area, load.shape).reshape(batch)[()]
+        )
 
 
 @lru_cache(maxsize=1)
@@ -228,8 +244,8 @@ def _ascending(grid: FloatArray, films: FloatArray) -> FloatArray:
 
 def _log_area(source: GapSource, limit: FloatArray, pressure: FloatArray) -> FloatArray:
     """ln A/A0 under pressures, Pa, of shape ``(B, F)`` with the yield stress ``limit``, Pa, of shape ``(B,)``."""
-    variance = np.asarray(stress_variance(source.spectrum, source.skin))
-    parts = (x[..., None] for x in (variance, limit, np.asarray(source.area_correction)))
+    twice_variance = np.asarray(twice_stress_variance(source.spectrum, source.skin))
+    parts = (x[..., None] for x in (twice_variance, limit, np.asarray(source.area_correction)))
     return np.log(total_contact_area(pressure, *parts))
 
 

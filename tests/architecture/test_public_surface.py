@@ -192,7 +192,16 @@ def test_what_could_be_exchanged_needs_its_name() -> None:
     from skinbayes.lubrication import lubricated_films, stribeck_curve
     from skinbayes.roughness import named_surface
 
-    skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    skin, surface = (
+        LayeredSkin(
+            young_modulus_layer=7e6,
+            young_modulus_bulk=20e3,
+            poisson_ratio_layer=0.5,
+            poisson_ratio_bulk=0.5,
+            layer_thickness=20e-6,
+        ),
+        named_surface("paper_reference"),
+    )
     with pytest.raises(TypeError, match="positional"):
         stribeck_curve([1e-3], 8e-3, 0.2, skin, surface, 15e6)  # type: ignore[misc]
     with pytest.raises(TypeError, match="positional"):

@@ -37,20 +37,20 @@ def draw(rng: np.random.Generator, vectors: int, rows: int = 0) -> dict[str, np.
 
 def skin_of(parameters: dict[str, float]) -> LayeredSkin:
     return LayeredSkin(
-        parameters["young_modulus_layer"],
-        parameters["young_modulus_bulk"],
-        0.5,
-        0.5,
-        parameters["layer_thickness"],
+        young_modulus_layer=parameters["young_modulus_layer"],
+        young_modulus_bulk=parameters["young_modulus_bulk"],
+        poisson_ratio_layer=0.5,
+        poisson_ratio_bulk=0.5,
+        layer_thickness=parameters["layer_thickness"],
     )
 
 
 def spectrum_of(parameters: dict[str, float]) -> SelfAffineSpectrum:
     shape = named_surface("paper_reference")
     return SelfAffineSpectrum(
-        parameters["rms_height"],
-        shape.hurst_exponent,
-        shape.wavevector_min,
-        shape.wavevector_rolloff,
-        shape.wavevector_max,
+        rms_height=parameters["rms_height"],
+        hurst_exponent=shape.hurst_exponent,
+        wavevector_min=shape.wavevector_min,
+        wavevector_rolloff=shape.wavevector_rolloff,
+        wavevector_max=shape.wavevector_max,
     )

@@ -14,10 +14,22 @@ def random_films(rng, nodes):
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
     bulk = scale(5e3, 5e6)
-    skin = LayeredSkin(max(bulk, scale(1e6, 1e9)), bulk, 0.5, 0.5, scale(1e-5, 1e-4))
-    surface = SelfAffineSpectrum(scale(1e-6, 5e-5), rng.uniform(0.6, 0.95), 1e3, scale(1.1e3, 2e4), 1e9)
+    skin = LayeredSkin(
+        young_modulus_layer=max(bulk, scale(1e6, 1e9)),
+        young_modulus_bulk=bulk,
+        poisson_ratio_layer=0.5,
+        poisson_ratio_bulk=0.5,
+        layer_thickness=scale(1e-5, 1e-4),
+    )
+    surface = SelfAffineSpectrum(
+        rms_height=scale(1e-6, 5e-5),
+        hurst_exponent=rng.uniform(0.6, 0.95),
+        wavevector_min=1e3,
+        wavevector_rolloff=scale(1.1e3, 2e4),
+        wavevector_max=1e9,
+    )
     modulus = float(reduced_modulus(bulk, 0.5))
-    cylinder = cylinder_of_sphere(scale(0.02, 5.0), scale(1e-3, 2e-2), modulus)
+    cylinder = cylinder_of_sphere(scale(0.02, 5.0), scale(1e-3, 2e-2), reduced_modulus=modulus)
     speeds = np.sort(np.exp(rng.uniform(np.log(1e-8), np.log(10.0), int(rng.integers(1, 31)))))
     law = asperity_law(surface, skin)
     radius, load = float(cylinder.cylinder_radius), float(cylinder.load_per_length)
