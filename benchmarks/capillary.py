@@ -46,8 +46,6 @@ class Case:
         self.skin = LayeredSkin(
             young_modulus_layer=scale(7e6, 0.25),
             young_modulus_bulk=scale(20e3, 0.15),
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
             layer_thickness=scale(20e-6, 0.15),
         )
         self.load, self.glass = scale(6830.0, 0.1), rng.uniform(0.0, 0.5, COUNT)

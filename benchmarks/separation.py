@@ -30,8 +30,10 @@ TUNED = [(vector, pressure) for vector in range(0, 64, 4) for pressure in range(
 
 def batch(p: dict[str, np.ndarray]) -> tuple[SelfAffineSpectrum, LayeredSkin]:
     """Surface and skin of all vectors."""
-    values = list(p.values())
-    return SelfAffineSpectrum(*values[:5]), LayeredSkin(*values[5:10])
+    surface, skin = (
+        {name: p[name] for name in kind.__dataclass_fields__} for kind in (SelfAffineSpectrum, LayeredSkin)
+    )
+    return SelfAffineSpectrum(**surface), LayeredSkin(**skin)
 
 
 class OneVector:

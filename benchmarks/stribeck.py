@@ -160,15 +160,9 @@ def fast_curve(products: np.ndarray, nodes: int) -> np.ndarray:
 
 def case() -> tuple[float, float, float, LayeredSkin, PowerSpectrum]:
     """Cylinder radius (m), load per length (N/m) and modulus (Pa) of Fig. 13 of the paper, with its skin and surface."""
-    skin = LayeredSkin(
-        young_modulus_layer=7e6,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    )
+    skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     modulus = float(reduced_modulus(20e3, 0.5))
-    radius, load = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=modulus)
+    load, radius = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=modulus)
     return float(radius), float(load), modulus, skin, named_surface("paper_reference")
 
 
@@ -221,8 +215,6 @@ def direct_friction(parameters: dict[str, float], products: np.ndarray, nodes: i
     skin = LayeredSkin(
         young_modulus_layer=parameters["young_modulus_layer"],
         young_modulus_bulk=parameters["young_modulus_bulk"],
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
         layer_thickness=parameters["layer_thickness"],
     )
     curve = stribeck_curve(

@@ -152,9 +152,8 @@ def total_contact_area(
 
     Examples
     --------
-    >>> print(
-    ...     f"{total_contact_area(6830.0, 6.87e18, yield_stress=50e6):.4e} {total_contact_area(6830.0, 3.366e14, yield_stress=50e6):.4e}"
-    ... )
+    >>> dry, wet = total_contact_area(6830.0, [6.87e18, 3.366e14], yield_stress=50e6)
+    >>> print(f"{dry:.4e} {wet:.4e}")
     1.3660e-04 6.4817e-04
     """
     ratio, spread, reach, shape = _dimensionless(

@@ -206,5 +206,5 @@ def cylinder_of_ellipse(
         possible = np.asarray(radius_across) >= np.asarray(radius_along)
         radius = np.where(possible, contact.effective_radius, np.nan)
     return cylinder_of_contact(
-        effective_contact_radius=radius, mean_pressure=contact.mean_pressure, reduced_modulus=reduced_modulus
+        effective_contact_radius=contact.mean_pressure, mean_pressure=radius, reduced_modulus=reduced_modulus
     )

@@ -48,7 +48,8 @@ class GapDistribution:
 
     Examples
     --------
-    >>> one_asperity = GapDistribution(*map(np.array, (1e-6, 0.1, [1e-6 / 0.9], [1e-9], [0.9])))
+    >>> one_asperity = GapDistribution(mean=np.array(1e-6), contact_fraction=np.array(0.1),
+    ...     location=np.array([1e-6 / 0.9]), width=np.array([1e-9]), weight=np.array([0.9]))
     >>> print(f"{one_asperity.cumulative(1e-6):.2f} {one_asperity.cumulative(2e-6):.2f}")
     0.10 1.00
     """
@@ -192,13 +193,7 @@ def gap_distribution(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> gaps = gap_distribution(6830.0, named_surface("paper_reference"), skin=wet)
     >>> print(f"{gaps.cumulative(10e-6):.4f} {gaps.film(10e-6):.3e} {gaps.mean:.4e}")
     0.3423 2.076e-06 1.3524e-05
@@ -224,10 +219,19 @@ def gap_distribution(
         width = np.maximum(np.broadcast_to(width, location.shape), _NARROWEST)
         own = _volume(np.inf, location, np.sqrt(2) * width)
         scale = (mean / np.maximum((weight * own).sum(axis=-1), 1e-300))[..., None]
-        fields = [mean, cells.area[..., -1], scale * location, np.maximum(scale * width, _NARROWEST), weight]
-        if not pressure.ndim:
-            fields = [fields[0][..., 0], fields[1][..., 0], *(x[..., 0, :] for x in fields[2:])]
-        return GapDistribution(*(x[()] for x in fields))
+        one = () if pressure.ndim else (0,)
+        return GapDistribution(
+            mean=mean[(..., *one)][()],
+            contact_fraction=cells.area[..., -1][(..., *one)][()],
+            **{
+                name: value[(..., *one, slice(None))]
+                for name, value in (
+                    ("location", scale * location),
+                    ("width", np.maximum(scale * width, _NARROWEST)),
+                    ("weight", weight),
+                )
+            },
+        )
 
 
 def _spacing(location: FloatArray) -> FloatArray:

@@ -62,13 +62,7 @@ def mean_separation(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{mean_separation(6830.0, named_surface('paper_reference'), skin=wet):.4e}")
     1.3524e-05
     """

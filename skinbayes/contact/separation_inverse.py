@@ -52,13 +52,7 @@ def pressure_at_separation(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{pressure_at_separation(14e-6, named_surface('paper_reference'), skin=wet):.1f}")
     6290.6
     """

@@ -51,7 +51,7 @@ def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     """
     table = tables.spectrum
     if table is None:
-        return SelfAffineSpectrum(*(inputs[name] for name in ROUGHNESS_INPUTS))
+        return SelfAffineSpectrum(**{name: inputs[name] for name in ROUGHNESS_INPUTS})
     if "rms_height" in inputs and isinstance(table, TabulatedSpectrum):
         scale = (inputs["rms_height"] / rms_height(table)) ** 2 * np.asarray(table.scale)
         return TabulatedSpectrum(table.wavevector, table.node_power, scale=scale)

@@ -107,16 +107,8 @@ def asperity_law(
     --------
     >>> import numpy as np
     >>> from skinbayes.roughness import named_surface
-    >>> law = asperity_law(
-    ...     named_surface("paper_reference"),
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> law = asperity_law(named_surface("paper_reference"), wet)
     >>> print(law(np.array([14e-6]))[0].round(0))
     [6290.]
     """
@@ -145,16 +137,8 @@ def asperity_table(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> table = asperity_table(
-    ...     named_surface("paper_reference"),
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> table = asperity_table(named_surface("paper_reference"), wet)
     >>> print(table.separation.shape, f"{table.separation[-1]:.2e} m at {np.exp(table.log_pressure[-1]):.0e} Pa")
     (160,) 3.64e-04 m at 2e-07 Pa
     """

@@ -46,8 +46,8 @@ def stribeck_curve_of_liquid(
     *,
     normal_force: float,
     sphere_radius: float,
-    skin: LayeredSkin,
     spectrum: PowerSpectrum,
+    skin: LayeredSkin,
     frictional_shear_stress: float,
     area_correction: float = AREA_CORRECTION,
     velocity_shift_factor: float = 1.0,
@@ -67,8 +67,8 @@ def stribeck_curve_of_liquid(
     flow_curve : η against shear rate; outside the measured rates the viscosity at the nearer end is used
     normal_force : F_N, N, > 0
     sphere_radius : R, m, > 0
-    skin : moduli in Pa, thickness in m, one skin
     spectrum : power spectrum, C in m^4, one surface
+    skin : moduli in Pa, thickness in m, one skin
     frictional_shear_stress : σ_f, Pa, ≥ 0
     area_correction : γ, dimensionless, 0 < γ ≤ 1
     velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
@@ -98,19 +98,11 @@ def stribeck_curve_of_liquid(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet, surface = (
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ...     named_surface("paper_reference"),
-    ... )
+    >>> surface = named_surface("paper_reference")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> honey = FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])
-    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, sphere_radius=8e-3, normal_force=0.2,
-    ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
+    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, normal_force=0.2, sphere_radius=8e-3,
+    ...     spectrum=surface, skin=wet, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3), viscosity.viscosity.round(1))
     [0.108 0.325] [25.  24.6]
     """

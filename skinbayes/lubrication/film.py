@@ -41,9 +41,9 @@ class LubricatedFilms(NamedTuple):
     separation : mean separation ū(x), m, shape ``(K, N)``
     fluid_pressure : p_f(x), Pa, shape ``(K, N)``
     asperity_pressure : p_a(x), Pa, shape ``(K, N)``
-    asperity_load_share : load carried by asperities over load, dimensionless, shape ``(K,)``
     couette : friction coefficient of the shear flow, ∫φ ηv/u dx/f_N, dimensionless, shape ``(K,)``
     pressure_flow : friction coefficient of the pressure flow, ½∫u dp_f/f_N, dimensionless, shape ``(K,)``
+    asperity_load_share : load carried by asperities over load, dimensionless, shape ``(K,)``
     minimum_film : smallest ū, m, shape ``(K,)``
     central_film : ū under the middle of the cylinder, m, shape ``(K,)``
     lubrication_number : λ = 6 η v Rc²/(b³ p_H), dimensionless, shape ``(K,)``
@@ -54,9 +54,9 @@ class LubricatedFilms(NamedTuple):
     separation: FloatArray
     fluid_pressure: FloatArray
     asperity_pressure: FloatArray
-    asperity_load_share: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
+    asperity_load_share: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
     lubrication_number: FloatArray

@@ -195,8 +195,8 @@ def film_axes(
     ranges: Mapping[str, tuple[float, float]],
     poisson_ratio_bulk: float = 0.5,
     *,
-    largest_strain: float = np.inf,
     counts: Mapping[str, int] | None = None,
+    largest_strain: float = np.inf,
     stress_scale: float | None = None,
 ) -> FilmAxes:
     """Axes for parameters that vary within ranges: as few as the similarity of the problem allows (Sect. 6 of the paper).
@@ -208,8 +208,8 @@ def film_axes(
     ----------
     ranges : smallest and largest value of each of the `FILM_PARAMETERS`, SI (Pa, m, N); equal for a fixed one
     poisson_ratio_bulk : ν1, dimensionless
-    largest_strain : b/Rc, dimensionless, beyond which no contact is wanted; it shortens the axis F R/E1
     counts : number of nodes of an axis, dimensionless, by its name; from the width of its range unless told otherwise
+    largest_strain : b/Rc, dimensionless, beyond which no contact is wanted; it shortens the axis F R/E1
     stress_scale : √V/(E0 h_rms), 1/m, of the rough surface; with it an axis ends where contact is fullest
 
     Returns

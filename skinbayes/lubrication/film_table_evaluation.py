@@ -46,9 +46,9 @@ class TabulatedFriction(NamedTuple):
     boundary : shear stress of the areas of real contact, dimensionless
     couette : shear flow of the liquid, dimensionless
     pressure_flow : pressure flow of the liquid, dimensionless
-    central_film : mean separation under the middle of the ball, m; nan if not asked for
-    minimum_film : smallest mean separation, m; nan if not asked for
     asperity_load_share : share of the load that asperities carry, dimensionless; nan if not asked for
+    minimum_film : smallest mean separation, m; nan if not asked for
+    central_film : mean separation under the middle of the ball, m; nan if not asked for
     strain : b/Rc of the Hertz contact, dimensionless
     outside_table : the table does not hold the parameters, or λ is above 2e4
     too_strained : b/Rc is above the largest strain
@@ -59,9 +59,9 @@ class TabulatedFriction(NamedTuple):
     boundary: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    central_film: FloatArray
-    minimum_film: FloatArray
     asperity_load_share: FloatArray
+    minimum_film: FloatArray
+    central_film: FloatArray
     strain: FloatArray
     outside_table: NDArray[np.bool_]
     too_strained: NDArray[np.bool_]
@@ -112,11 +112,8 @@ def tabulated_friction(
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
     >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
-    >>> print(
-    ...     tabulated_friction(
-    ...         table, [1e-6, 1e-3, 2e-2], parameters=ball, frictional_shear_stress=15e6
-    ...     ).friction_coefficient.round(3)
-    ... )
+    >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], parameters=ball,
+    ...     frictional_shear_stress=15e6).friction_coefficient.round(3))
     [1.423 0.915 0.109]
     """
     arguments = _arguments(
@@ -195,9 +192,8 @@ def tabulated_friction_of_liquids(
     >>> ranges = {name: (value, value) for name, value in ball.items()}
     >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
     >>> liquids = liquid_rows([FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])] * 2)
-    >>> friction, viscosity = tabulated_friction_of_liquids(
-    ...     table, [1e-3, 1e-2], liquids=liquids, parameters=ball, frictional_shear_stress=15e6
-    ... )
+    >>> friction, viscosity = tabulated_friction_of_liquids(table, [1e-3, 1e-2], liquids=liquids,
+    ...     parameters=ball, frictional_shear_stress=15e6)
     >>> print(friction.friction_coefficient.round(3), viscosity.viscosity.round(1), viscosity.unmeasured)
     [0.108 0.325] [25.  24.6] [False False]
     """
@@ -300,9 +296,9 @@ def _friction(
         boundary,
         couette,
         pressure,
-        np.exp(logs[CENTRAL] + scales.height) + missing if everything else nothing,
-        np.exp(logs[MINIMUM] + scales.height) + missing if everything else nothing,
         np.exp(logs[SHARE]) + missing if everything else nothing,
+        np.exp(logs[MINIMUM] + scales.height) + missing if everything else nothing,
+        np.exp(logs[CENTRAL] + scales.height) + missing if everything else nothing,
         np.broadcast_to(np.exp(scales.strain), good.shape),
         ~held & ~np.isnan(log_number),
         np.broadcast_to(strained, good.shape),

@@ -169,16 +169,8 @@ def tabulated_flow_factors(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> factors = tabulated_flow_factors(
-    ...     named_surface("paper_reference"),
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ... )
+    >>> factors = tabulated_flow_factors(named_surface("paper_reference"),
+    ...     LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6))
     >>> print(factors.flow(np.array([14e-6]))[0].round(2))
     [0.73]
     """

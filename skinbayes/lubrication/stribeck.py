@@ -109,8 +109,8 @@ def stribeck_curve(
     *,
     normal_force: ArrayLike,
     sphere_radius: ArrayLike,
-    skin: LayeredSkin,
     spectrum: PowerSpectrum,
+    skin: LayeredSkin,
     frictional_shear_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
     velocity_shift_factor: ArrayLike = 1.0,
@@ -131,8 +131,8 @@ def stribeck_curve(
     speed_viscosity_product : ηv, N/m, > 0, shape ``(K,)``, or a scalar; with a rheology η0 v
     normal_force : F_N, N, > 0, batch shape
     sphere_radius : R, m, > 0, batch shape
-    skin : moduli in Pa, thickness in m, batch shape
     spectrum : power spectrum, C in m^4, batch shape
+    skin : moduli in Pa, thickness in m, batch shape
     frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     area_correction : γ, dimensionless, 0 < γ ≤ 1, batch shape; 1 is plain Persson theory
     velocity_shift_factor : a, dimensionless, > 0, batch shape; the theory is evaluated at a ηv
@@ -159,18 +159,10 @@ def stribeck_curve(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet, surface = (
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ...     named_surface("paper_reference"),
-    ... )
-    >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], sphere_radius=8e-3, normal_force=0.2,
-    ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
+    >>> surface = named_surface("paper_reference")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], normal_force=0.2, sphere_radius=8e-3,
+    ...     spectrum=surface, skin=wet, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3))
     [1.423 0.915 0.109   nan]
     >>> print(*curve.reasons(), sep="\\n")
@@ -182,15 +174,11 @@ def stribeck_curve(
     twice_variance = twice_stress_variance(spectrum, skin)
     modulus = reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk)
     table = asperity_table(spectrum, skin, area_correction=area_correction)
+    case = (normal_force, sphere_radius, frictional_shear_stress, area_correction, velocity_shift_factor,
+            twice_variance, modulus)  # fmt: skip
     inputs = np.broadcast_arrays(
-        *(
-            np.asarray(x, dtype=np.float64)[..., None]
-            for x in (
-                sphere_radius, normal_force, frictional_shear_stress, area_correction, velocity_shift_factor, twice_variance, modulus,
-            )
-        ),
-        table.separation[..., :1],
-    )  # fmt: skip
+        *(np.asarray(x, dtype=np.float64)[..., None] for x in case), table.separation[..., :1]
+    )
     batch = inputs[0].shape[:-1]
     cases = np.concatenate(inputs[:-1], axis=-1).reshape(-1, len(inputs) - 1)
     points = (np.broadcast_to(part, (*batch, part.shape[-1])) for part in table)
@@ -198,7 +186,7 @@ def stribeck_curve(
     rows = [
         _one_curve(
             products,
-            _Case(*case),
+            _Case(*row),
             AsperityTable(*points),
             flow_factors,
             rheology,
@@ -206,7 +194,7 @@ def stribeck_curve(
             thickest_film,
             largest_strain,
         )
-        for case, *points in zip(cases.tolist(), knots, levels, strict=True)
+        for row, *points in zip(cases.tolist(), knots, levels, strict=True)
     ]
 
     def gather(name: str) -> Any:
@@ -221,8 +209,8 @@ def stribeck_curve(
 class _Case(NamedTuple):
     """One set of parameters, SI."""
 
-    sphere_radius: float
     normal_force: float
+    sphere_radius: float
     shear_stress: float
     area_correction: float
     shift: float

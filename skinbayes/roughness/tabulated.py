@@ -98,7 +98,7 @@ class TabulatedSpectrum:
         """
         nodes, values = as_field(wavevector), as_field(profile_power)
         check_table(nodes, values, "profile_power", "m^3")
-        return cls(nodes, isotropic_from_profile(nodes, values), scale)
+        return cls(nodes, isotropic_from_profile(nodes, values), scale=scale)
 
     @property
     def wavevector_min(self) -> Floats:

@@ -63,7 +63,7 @@ class Bridged(NamedTuple):
             known = self.table.covers(groups) & (self.pull > 0)
             if known.any():
                 chosen = {name: value[known] for name, value in groups.items()}
-                curve = self.table.curve(chosen, self.load[known], self.height[known])
+                curve = self.table.curve(chosen, self.load[known], height=self.height[known])
                 separation[known] = curve.flooded()
         rest = np.flatnonzero(~known)
         if rest.size:

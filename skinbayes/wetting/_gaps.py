@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
-from typing import Any, Literal
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from skinbayes.roughness.tabulated import TabulatedSpectrum
 from skinbayes.wetting._mixture import Mixture
 
 Closure = Literal["gaussian", "delta"]
+Thing = TypeVar("Thing", SelfAffineSpectrum, LayeredSkin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class GapSource:
 def map_spectrum(spectrum: PowerSpectrum, change: Callable[[FloatArray], FloatArray]) -> PowerSpectrum:
     """The spectrum with ``change`` applied to those of its parameters that are arrays."""
     if isinstance(spectrum, SelfAffineSpectrum):
-        return SelfAffineSpectrum(*_changed(spectrum, change))
+        return _changed(spectrum, change)
     if isinstance(spectrum, TabulatedSpectrum) and np.ndim(spectrum.scale):
         return TabulatedSpectrum(
             spectrum.wavevector, spectrum.node_power, scale=change(np.asarray(spectrum.scale))
@@ -71,7 +72,7 @@ def map_spectrum(spectrum: PowerSpectrum, change: Callable[[FloatArray], FloatAr
 
 def map_skin(skin: LayeredSkin, change: Callable[[FloatArray], FloatArray]) -> LayeredSkin:
     """The skin with ``change`` applied to those of its parameters that are arrays."""
-    return LayeredSkin(*_changed(skin, change))
+    return _changed(skin, change)
 
 
 def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, ...]]:
@@ -81,6 +82,6 @@ def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, 
     return [*shapes, np.shape(getattr(spectrum, "scale", 1.0))]
 
 
-def _changed(thing: Any, change: Callable[[FloatArray], FloatArray]) -> list[Any]:
-    values = [getattr(thing, field.name) for field in fields(thing)]
-    return [change(value) if np.ndim(value) else value for value in values]
+def _changed(thing: Thing, change: Callable[[FloatArray], FloatArray]) -> Thing:
+    values = ((field.name, getattr(thing, field.name)) for field in fields(thing))
+    return replace(thing, **{name: change(value) for name, value in values if np.ndim(value)})

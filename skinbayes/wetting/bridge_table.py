@@ -76,7 +76,7 @@ class BridgeTable:
         ]
         return np.asarray(np.logical_and.reduce(inside))
 
-    def curve(self, groups: Groups, pressure: FloatArray, height: FloatArray) -> Curve:
+    def curve(self, groups: Groups, pressure: FloatArray, *, height: FloatArray) -> Curve:
         """Curves of skins in the box; pressure, Pa, and rms height, m, have the shape ``(B,)`` of the groups."""
         weight = np.ones((pressure.size, 1))
         for name, count in self.counts.items():
@@ -122,15 +122,9 @@ def skin_groups(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> skin = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
-    >>> arguments = (np.array([x]) for x in (6830.0, 0.0845, 22.4e-6))
-    >>> groups = skin_groups(*arguments, named_surface("paper_reference"), skin, np.array(0.42))
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> groups = skin_groups(np.array([6830.0]), np.array([0.0845]), height=np.array([22.4e-6]),
+    ...     spectrum=named_surface("paper_reference"), skin=skin, area_correction=np.array(0.42))
     >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["pull"].round(3))
     [5.858] [7.679] [1.531]
     """
@@ -191,15 +185,10 @@ def bridge_table(
     Layers from 6 to 8 MPa, down to a film of about 0.1 µm:
 
     >>> from skinbayes.roughness import named_surface
-    >>> skins = LayeredSkin(
-    ...     young_modulus_layer=np.array([6e6, 8e6]),
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
-    >>> same = (np.full(2, x) for x in (6830.0, 0.0845, 22.4e-6))
-    >>> groups = skin_groups(*same, named_surface("paper_reference"), skins, np.array(0.42))
+    >>> skins = LayeredSkin(young_modulus_layer=np.array([6e6, 8e6]), young_modulus_bulk=20e3,
+    ...     layer_thickness=20e-6)
+    >>> groups = skin_groups(np.full(2, 6830.0), np.full(2, 0.0845), height=np.full(2, 22.4e-6),
+    ...     spectrum=named_surface("paper_reference"), skin=skins, area_correction=np.array(0.42))
     >>> low, high = ({name: end(x) for name, x in groups.items()} for end in (np.min, np.max))
     >>> table = bridge_table(low, high, depth=6830.0 / 20e3 / 1e-7)
     >>> print(dict(table.counts), table.error < 1e-3)
@@ -307,7 +296,7 @@ def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
     count = len(exact)
     groups = {n: np.broadcast_to(x, (count,)) for n, x in {**_fields(table.low), **places}.items()}
     one = np.ones(count)
-    curve = table.curve(groups, one, one)
+    curve = table.curve(groups, one, height=one)
     sound = _curve_of(exact, curve.end, one, one)
     # all films but the last of them, which one of the two may not reach, and the vertical rise where the gap is flooded
     z = curve.end[:, None] * np.linspace(0.2, 0.98, 48)
@@ -347,8 +336,8 @@ def _curves(
         scale = spectrum.scale * (height / rms_height(spectrum)) ** 2
         surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale=scale)
     else:
-        waves = (np.exp(given[name]) for name in SURFACE_GROUPS[1:])
-        surface = SelfAffineSpectrum(height, given["hurst_exponent"], *waves)
+        waves = {name: np.exp(given[name]) for name in SURFACE_GROUPS[1:]}
+        surface = SelfAffineSpectrum(rms_height=height, hurst_exponent=given["hurst_exponent"], **waves)
     skin = LayeredSkin(
         young_modulus_layer=_BULK * np.exp(given["stiffness"]),
         young_modulus_bulk=bulk,

@@ -100,35 +100,13 @@ def drying_curve(
     >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> from skinbayes.wetting import film_contact
-    >>> skin, surface = (
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ...     named_surface("paper_reference"),
-    ... )
-    >>> contact = film_contact(
-    ...     6830.0,
-    ...     surface,
-    ...     skin=skin,
-    ...     surface_tension=0.0727,
-    ...     contact_angle_skin=radians(80.0),
-    ...     contact_angle_counterface=0.0,
-    ...     young_modulus_layer_dry=1e9,
-    ...     yield_stress=50e6,
-    ... )
-    >>> curve = drying_curve(
-    ...     [0.0, 200.0, 500.0, 600.0],
-    ...     30.0,
-    ...     initial_film=90e-6,
-    ...     evaporation_rate=1.743e-7,
-    ...     contact=contact,
-    ...     frictional_shear_stress=15e6,
-    ...     nominal_pressure=6830.0,
-    ... )
+    >>> surface = named_surface("paper_reference")
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> contact = film_contact(6830.0, surface, skin=skin, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0, young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6)
+    >>> curve = drying_curve([0.0, 200.0, 500.0, 600.0], 30.0, initial_film=90e-6, evaporation_rate=1.743e-7,
+    ...     contact=contact, frictional_shear_stress=15e6, nominal_pressure=6830.0)
     >>> print(curve.friction_coefficient.round(3))
     [0.3   1.423 2.28  0.3  ]
     """
@@ -200,34 +178,13 @@ def drying_features(
     >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> from skinbayes.wetting import film_contact
-    >>> skin, surface = (
-    ...     LayeredSkin(
-    ...         young_modulus_layer=7e6,
-    ...         young_modulus_bulk=20e3,
-    ...         poisson_ratio_layer=0.5,
-    ...         poisson_ratio_bulk=0.5,
-    ...         layer_thickness=20e-6,
-    ...     ),
-    ...     named_surface("paper_reference"),
-    ... )
-    >>> contact = film_contact(
-    ...     6830.0,
-    ...     surface,
-    ...     skin=skin,
-    ...     surface_tension=0.0727,
-    ...     contact_angle_skin=radians(80.0),
-    ...     contact_angle_counterface=0.0,
-    ...     young_modulus_layer_dry=1e9,
-    ...     yield_stress=50e6,
-    ... )
-    >>> features = drying_features(
-    ...     30.0,
-    ...     90e-6,
-    ...     evaporation_rate=1.743e-7,
-    ...     contact=contact,
-    ...     frictional_shear_stress=15e6,
-    ...     nominal_pressure=6830.0,
-    ... )
+    >>> surface = named_surface("paper_reference")
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> contact = film_contact(6830.0, surface, skin=skin, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0, young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6)
+    >>> features = drying_features(30.0, 90e-6, evaporation_rate=1.743e-7, contact=contact,
+    ...     frictional_shear_stress=15e6, nominal_pressure=6830.0)
     >>> print(f"{features.peak_time:.1f} {features.peak_friction:.3f} {features.peak_width:.1f} {features.dry_time:.1f}")
     513.2 2.319 66.5 546.4
     """

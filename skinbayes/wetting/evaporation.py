@@ -65,10 +65,10 @@ def evaporation_rate_from_pressures(
 
 
 def evaporation_rate(
-    surface_temperature: ArrayLike,
-    air_temperature: ArrayLike,
-    *,
     relative_humidity: ArrayLike,
+    surface_temperature: ArrayLike,
+    *,
+    air_temperature: ArrayLike,
     air_speed: ArrayLike = 0.0,
     latent_heat: ArrayLike = LATENT_HEAT_OF_PAPER,
 ) -> FloatArray:
@@ -79,9 +79,9 @@ def evaporation_rate(
 
     Parameters
     ----------
-    surface_temperature : temperature of the water on the skin, K, any shape
+    relative_humidity : RH of the room, dimensionless, 0 … 1, any shape
+    surface_temperature : temperature of the water on the skin, K, broadcasts
     air_temperature : temperature of the room, K, broadcasts
-    relative_humidity : RH of the room, dimensionless, 0 … 1, broadcasts
     air_speed : v, m/s, ≥ 0, broadcasts
     latent_heat : Y, J/kg, > 0, broadcasts
 
@@ -101,7 +101,7 @@ def evaporation_rate(
     Examples
     --------
     >>> print(
-    ...     f"{evaporation_rate(surface_temperature=308.15, air_temperature=293.15, relative_humidity=0.5):.3e}"
+    ...     f"{evaporation_rate(surface_temperature=0.5, air_temperature=308.15, air_temperature=293.15):.3e}"
     ... )
     1.747e-07
     """

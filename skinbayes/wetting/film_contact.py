@@ -141,23 +141,10 @@ def film_contact(
     --------
     >>> from math import radians
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
-    >>> contact = film_contact(
-    ...     6830.0,
-    ...     named_surface("paper_reference"),
-    ...     skin=wet,
-    ...     surface_tension=0.0727,
-    ...     contact_angle_skin=radians(80.0),
-    ...     contact_angle_counterface=0.0,
-    ...     young_modulus_layer_dry=1e9,
-    ...     yield_stress=50e6,
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> contact = film_contact(6830.0, named_surface("paper_reference"), skin=wet, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0, young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6)
     >>> print(f"{contact.dry_area:.3e} {contact.area.max():.3e} {contact.area[-1]:.3e}")
     1.366e-04 1.056e-03 6.481e-04
     """
@@ -245,8 +232,14 @@ def _ascending(grid: FloatArray, films: FloatArray) -> FloatArray:
 def _log_area(source: GapSource, limit: FloatArray, pressure: FloatArray) -> FloatArray:
     """ln A/A0 under pressures, Pa, of shape ``(B, F)`` with the yield stress ``limit``, Pa, of shape ``(B,)``."""
     twice_variance = np.asarray(twice_stress_variance(source.spectrum, source.skin))
-    parts = (x[..., None] for x in (twice_variance, limit, np.asarray(source.area_correction)))
-    return np.log(total_contact_area(pressure, *parts))
+    return np.log(
+        total_contact_area(
+            pressure,
+            twice_variance[..., None],
+            yield_stress=limit[..., None],
+            area_correction=np.asarray(source.area_correction)[..., None],
+        )
+    )
 
 
 def _hardened(

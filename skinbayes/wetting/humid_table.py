@@ -135,14 +135,8 @@ def humid_groups(
 
     Examples
     --------
-    >>> skin = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
-    >>> groups = humid_groups(*(np.array([x]) for x in (6830.0, 1e-9, 22.4e-6)), skin)
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> groups = humid_groups(np.array([6830.0]), np.array([1e-9]), height=np.array([22.4e-6]), skin=skin)
     >>> print({name: float(value[0].round(3)) for name, value in groups.items()})
     {'load': 9.632, 'gap': -10.017, 'stiffness': 5.858, 'layer_thickness': -10.82}
     """
@@ -194,19 +188,12 @@ def humid_table(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> skin = LayeredSkin(
-    ...     young_modulus_layer=7e6,
-    ...     young_modulus_bulk=20e3,
-    ...     poisson_ratio_layer=0.5,
-    ...     poisson_ratio_bulk=0.5,
-    ...     layer_thickness=20e-6,
-    ... )
-    >>> groups = humid_groups(*(np.array([x]) for x in (6830.0, 1e-9, 22.4e-6)), skin)
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> groups = humid_groups(np.array([6830.0]), np.array([1e-9]), height=np.array([22.4e-6]), skin=skin)
     >>> low = {name: float(value[0]) for name, value in groups.items()}
     >>> high = {**low, "load": low["load"] + 1, "gap": low["gap"] + 1}
-    >>> table = humid_table(
-    ...     low, high, spectrum=named_surface("paper_reference"), skin=skin, area_correction=np.array(0.42)
-    ... )
+    >>> table = humid_table(low, high, spectrum=named_surface("paper_reference"), skin=skin,
+    ...     area_correction=np.array(0.42))
     >>> print(table.axes["load"][1], f"{table.share(groups)[0]:.3e}")
     14 1.428e-04
     """

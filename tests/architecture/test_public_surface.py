@@ -193,13 +193,7 @@ def test_what_could_be_exchanged_needs_its_name() -> None:
     from skinbayes.roughness import named_surface
 
     skin, surface = (
-        LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=20e3,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
         named_surface("paper_reference"),
     )
     with pytest.raises(TypeError, match="positional"):

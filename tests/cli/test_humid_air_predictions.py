@@ -128,8 +128,17 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
         wavevector_rolloff=body.rolloff,
         wavevector_max=body.high,
     )
-    angles = math.radians(first), math.radians(second)
-    state = capillary_state_in_humid_air(humidity, kelvin, load, surface, skin, *angles, correction, closure)
+    state = capillary_state_in_humid_air(
+        humidity,
+        kelvin,
+        nominal_pressure=load,
+        spectrum=surface,
+        skin=skin,
+        contact_angle_skin=math.radians(first),
+        contact_angle_counterface=math.radians(second),
+        area_correction=correction,
+        closure=closure,
+    )
     assert pull == pytest.approx(state.capillary_pressure, rel=1e-9)
     assert pull > 0.01 * load
     # Kelvin's equation for a mole of water, and Eqs. 5 to 7 with the public gap distribution

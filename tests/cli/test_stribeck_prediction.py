@@ -62,13 +62,7 @@ def test_other_parameters_against_the_physics(capsys):
     found = run(
         capsys, "predict", "stribeck", *arguments, "--set", "speed_viscosity_product=2 mN/m", "--json"
     ).document()["prediction"]
-    skin = LayeredSkin(
-        young_modulus_layer=3e6,
-        young_modulus_bulk=60e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=50e-6,
-    )
+    skin = LayeredSkin(young_modulus_layer=3e6, young_modulus_bulk=60e3, layer_thickness=50e-6)
     surface = SelfAffineSpectrum(
         rms_height=12e-6,
         hurst_exponent=0.78,

@@ -103,8 +103,17 @@ def test_other_skin_against_scalars_and_independent_code(predict, case, closure)
         wavevector_rolloff=body.rolloff,
         wavevector_max=body.high,
     )
-    angles = math.radians(first), math.radians(second)
-    state = capillary_state(film, load, surface, skin, 0.072, *angles, correction, closure)
+    state = capillary_state(
+        film,
+        load,
+        spectrum=surface,
+        skin=skin,
+        surface_tension=0.072,
+        contact_angle_skin=math.radians(first),
+        contact_angle_counterface=math.radians(second),
+        area_correction=correction,
+        closure=closure,
+    )
     for name, value in found.items():
         assert value == pytest.approx(getattr(state, name), rel=1e-9), name
     assert found["capillary_pressure"] > 0.1 * load
@@ -212,24 +221,31 @@ def test_other_drying_against_scalars_and_independent_code(predict, case):
         given[k] for k in ("young_modulus_layer", "nominal_pressure", "frictional_shear_stress")
     )
     skin, surface = (
-        LayeredSkin(
-            young_modulus_layer=layer,
-            young_modulus_bulk=20e3,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=20e3, layer_thickness=20e-6),
         named_surface("paper_reference"),
     )
     contact = film_contact(
-        load, surface, skin=skin, surface_tension=0.072, contact_angle_skin=math.radians(80), contact_angle_counterface=given["contact_angle_counterface"],
-        young_modulus_layer_dry=given["young_modulus_layer_dry"], yield_stress=given["yield_stress"], hardening_film=given["hardening_film"],
-    )  # fmt: skip
+        load,
+        surface,
+        skin=skin,
+        surface_tension=0.072,
+        contact_angle_skin=math.radians(80),
+        contact_angle_counterface=given["contact_angle_counterface"],
+        young_modulus_layer_dry=given["young_modulus_layer_dry"],
+        yield_stress=given["yield_stress"],
+        hardening_film=given["hardening_film"],
+    )
     for i in range(0, len(time), 7):
         one = drying_curve(
-            time[i], given["wetting_time"], initial_film=given["initial_film"], evaporation_rate=given["evaporation_rate"], contact=contact, frictional_shear_stress=shear, nominal_pressure=load,
+            time[i],
+            given["wetting_time"],
+            initial_film=given["initial_film"],
+            evaporation_rate=given["evaporation_rate"],
+            contact=contact,
+            frictional_shear_stress=shear,
+            nominal_pressure=load,
             film_spread=given["film_spread"],
-        )  # fmt: skip
+        )
         for name, values in found.items():
             assert values[i] == pytest.approx(getattr(one, name), rel=1e-10, abs=1e-18), (name, time[i])
     # dry before and after, flooded in between, by other code

@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
+from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin
 from skinbayes.lubrication import FILM_PARAMETERS, FilmTable, build_film_table
@@ -39,18 +40,18 @@ def skin_of(parameters: dict[str, float]) -> LayeredSkin:
     return LayeredSkin(
         young_modulus_layer=parameters["young_modulus_layer"],
         young_modulus_bulk=parameters["young_modulus_bulk"],
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
         layer_thickness=parameters["layer_thickness"],
     )
 
 
 def spectrum_of(parameters: dict[str, float]) -> SelfAffineSpectrum:
     shape = named_surface("paper_reference")
-    return SelfAffineSpectrum(
-        rms_height=parameters["rms_height"],
-        hurst_exponent=shape.hurst_exponent,
-        wavevector_min=shape.wavevector_min,
-        wavevector_rolloff=shape.wavevector_rolloff,
-        wavevector_max=shape.wavevector_max,
+    return surface_from(
+        (
+            parameters["rms_height"],
+            shape.hurst_exponent,
+            shape.wavevector_min,
+            shape.wavevector_rolloff,
+            shape.wavevector_max,
+        )
     )

@@ -22,13 +22,7 @@ from skinbayes.wetting._curve import solve_curve
 from skinbayes.wetting._gaps import GapSource
 
 SURFACE = named_surface("paper_reference")
-WET = LayeredSkin(
-    young_modulus_layer=7e6,
-    young_modulus_bulk=20e3,
-    poisson_ratio_layer=0.5,
-    poisson_ratio_bulk=0.5,
-    layer_thickness=20e-6,
-)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 LOAD, TENSION, SKIN_ANGLE = 6830.0, 0.0727, np.radians(80.0)
 FIELDS = ("film_thickness", "kelvin_gap", "capillary_pressure", "total_pressure", "relative_contact_area",
           "wet_area", "mean_separation", "mean_separation_wet", "flooded", "solutions")  # fmt: skip
@@ -304,8 +298,13 @@ def test_surface_energy_is_the_work_of_the_laplace_pressure():
     for i in range(films.size):
         held = capillary_state(
             films[i] + step[i] * np.array([-1.0, 1.0]),
-            state.total_pressure[i], spectrum=SURFACE, skin=WET, surface_tension=0.0, contact_angle_skin=SKIN_ANGLE, contact_angle_counterface=0.0,
-        )  # fmt: skip
+            state.total_pressure[i],
+            spectrum=SURFACE,
+            skin=WET,
+            surface_tension=0.0,
+            contact_angle_skin=SKIN_ANGLE,
+            contact_angle_counterface=0.0,
+        )
         assert np.diff(held.wet_area)[0] / (2 * step[i]) == pytest.approx(1 / state.kelvin_gap[i], rel=1e-5)
 
 
@@ -373,13 +372,10 @@ def random_vectors(count, seed):
     def scale(middle, width):
         return middle * np.exp(rng.normal(0.0, width, count))
 
-    surface = SelfAffineSpectrum(rms_height=scale(22e-6, 0.3), hurst_exponent=rng.uniform(0.65, 0.95, count), wavevector_min=scale(1e3, 0.2),
-                                 wavevector_rolloff=scale(6.3e3, 0.2), wavevector_max=scale(1e9, 0.3))  # fmt: skip
+    surface = surface_from((scale(22e-6, 0.3), rng.uniform(0.65, 0.95, count), scale(1e3, 0.2), scale(6.3e3, 0.2), scale(1e9, 0.3)))  # fmt: skip
     skin = LayeredSkin(
         young_modulus_layer=scale(7e6, 0.5),
         young_modulus_bulk=scale(20e3, 0.4),
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
         layer_thickness=scale(20e-6, 0.3),
     )
     return surface, skin, scale(6830.0, 0.3), scale(0.07, 0.05), rng.uniform(0.0, 0.6, count)
@@ -404,9 +400,16 @@ def test_batches_agree_with_rows_to_the_last_bit(refine):
             films,
             load[i],
             spectrum=surface_from(getattr(surface, n)[i] for n in surface.__dataclass_fields__),
-            skin=LayeredSkin(young_modulus_layer=skin.young_modulus_layer[i], young_modulus_bulk=skin.young_modulus_bulk[i], poisson_ratio_layer=0.5, poisson_ratio_bulk=0.5, layer_thickness=skin.layer_thickness[i]),
-            surface_tension=tension[i], contact_angle_skin=SKIN_ANGLE, contact_angle_counterface=glass[i], refine=refine,
-        )  # fmt: skip
+            skin=LayeredSkin(
+                young_modulus_layer=skin.young_modulus_layer[i],
+                young_modulus_bulk=skin.young_modulus_bulk[i],
+                layer_thickness=skin.layer_thickness[i],
+            ),
+            surface_tension=tension[i],
+            contact_angle_skin=SKIN_ANGLE,
+            contact_angle_counterface=glass[i],
+            refine=refine,
+        )
         for name in FIELDS:
             np.testing.assert_array_equal(getattr(batch, name)[i], getattr(one, name), err_msg=name)
 
@@ -438,19 +441,22 @@ def test_no_kinks_along_random_lines(seed):
 
     def gradient(half_width):
         place = np.linspace(-half_width, half_width, 41)
-        surface = SelfAffineSpectrum(rms_height=22.4e-6 * np.exp(direction[0] * place), hurst_exponent=0.78 + 0.05 * direction[1] * place, wavevector_min=1e3,
-                                     wavevector_rolloff=6345.0, wavevector_max=1e9)  # fmt: skip
+        surface = surface_from((22.4e-6 * np.exp(direction[0] * place), 0.78 + 0.05 * direction[1] * place, 1e3, 6345.0, 1e9))  # fmt: skip
         skin = LayeredSkin(
             young_modulus_layer=7e6 * np.exp(direction[2] * place),
             young_modulus_bulk=20e3 * np.exp(direction[3] * place),
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
             layer_thickness=20e-6,
         )
         state = capillary_state(
-            5e-6 * np.exp(0.3 * direction[4] * place)[:, None], LOAD * np.exp(direction[5] * place), spectrum=surface, skin=skin,
-            surface_tension=TENSION, contact_angle_skin=SKIN_ANGLE, contact_angle_counterface=0.3 + 0.3 * direction[6] * place, refine=False,
-        )  # fmt: skip
+            5e-6 * np.exp(0.3 * direction[4] * place)[:, None],
+            LOAD * np.exp(direction[5] * place),
+            spectrum=surface,
+            skin=skin,
+            surface_tension=TENSION,
+            contact_angle_skin=SKIN_ANGLE,
+            contact_angle_counterface=0.3 + 0.3 * direction[6] * place,
+            refine=False,
+        )
         return np.diff(np.log(state.relative_contact_area[:, 0])) / np.diff(place)
 
     # changes of the gradient from step to step shrink with the step where there is neither jump nor kink
@@ -461,8 +467,16 @@ def test_no_kinks_along_random_lines(seed):
 def test_shapes_and_impossible_arguments():
     assert paper(5e-6).wet_area.shape == ()
     assert paper([5e-6]).wet_area.shape == (1,)
-    grid = capillary_state([1e-6, 5e-6, 9e-6], np.array([[3e3], [6e3]]), spectrum=SURFACE, skin=WET, surface_tension=TENSION, contact_angle_skin=SKIN_ANGLE,
-                           contact_angle_counterface=np.array([0.0, 0.2, 0.4, 0.6]), refine=False)  # fmt: skip
+    grid = capillary_state(
+        [1e-6, 5e-6, 9e-6],
+        np.array([[3e3], [6e3]]),
+        spectrum=SURFACE,
+        skin=WET,
+        surface_tension=TENSION,
+        contact_angle_skin=SKIN_ANGLE,
+        contact_angle_counterface=np.array([0.0, 0.2, 0.4, 0.6]),
+        refine=False,
+    )
     assert grid.wet_area.shape == (2, 4, 3)
     bad = paper([np.nan, -1e-6, 0.0, 5e-6])
     for name in FIELDS:
@@ -523,13 +537,7 @@ def test_thin_films_and_strong_pulls():
         wavevector_rolloff=3600.0,
         wavevector_max=2e9,
     )
-    soft = LayeredSkin(
-        young_modulus_layer=1.4e6,
-        young_modulus_bulk=68e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    )
+    soft = LayeredSkin(young_modulus_layer=1.4e6, young_modulus_bulk=68e3, layer_thickness=20e-6)
     separation = mean_separation(14e3, surface, skin=soft)
     strong = capillary_state(
         separation * np.array([0.01, 0.1, 0.5, 0.9]),

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin, persson_contact_area, relative_contact_area, twice_stress_variance
-from skinbayes.roughness import SelfAffineSpectrum, rms_slope
+from skinbayes.roughness import rms_slope
 
 POINTS, ROLL_OFF, CUT_OFF, HURST = 512, 4, 64, 0.8
 
@@ -40,23 +41,9 @@ def test_theories_against_boundary_elements(pressure):
     tamaas.set_log_level(tamaas.LogLevel.error)
     exact = np.mean([solved_area(tamaas, surface_of_unit_slope(tamaas, seed), pressure) for seed in (1, 2)])
     q_r, q_1 = 2 * np.pi * ROLL_OFF, 2 * np.pi * CUT_OFF
-    unit = rms_slope(
-        SelfAffineSpectrum(
-            rms_height=1.0,
-            hurst_exponent=HURST,
-            wavevector_min=q_r,
-            wavevector_rolloff=q_r,
-            wavevector_max=q_1,
-        )
-    )
+    unit = rms_slope(surface_from((1.0, HURST, q_r, q_r, q_1)))
     twice_variance = twice_stress_variance(
-        SelfAffineSpectrum(
-            rms_height=1 / unit,
-            hurst_exponent=HURST,
-            wavevector_min=q_r,
-            wavevector_rolloff=q_r,
-            wavevector_max=q_1,
-        ),
+        surface_from((1 / unit, HURST, q_r, q_r, q_1)),
         LayeredSkin(
             young_modulus_layer=1.0,
             young_modulus_bulk=1.0,

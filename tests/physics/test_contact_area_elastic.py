@@ -24,20 +24,8 @@ from skinbayes.roughness import named_surface
 
 PRESSURE = 6830.0
 SURFACE = named_surface("paper_reference")
-WET = LayeredSkin(
-    young_modulus_layer=7e6,
-    young_modulus_bulk=20e3,
-    poisson_ratio_layer=0.5,
-    poisson_ratio_bulk=0.5,
-    layer_thickness=20e-6,
-)
-DRY = LayeredSkin(
-    young_modulus_layer=1e9,
-    young_modulus_bulk=20e3,
-    poisson_ratio_layer=0.5,
-    poisson_ratio_bulk=0.5,
-    layer_thickness=20e-6,
-)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+DRY = LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)
 
 
 def diffuse(pressure, twice_variances, cells=3000):

@@ -8,6 +8,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from named_fields import skin_from, surface_from
 
 from skinbayes.contact import (
     LayeredSkin,
@@ -29,7 +30,7 @@ from skinbayes.contact import (
     total_contact_area,
     twice_stress_variance,
 )
-from skinbayes.roughness import SelfAffineSpectrum, named_surface, rms_height, rms_slope, total_area_ratio
+from skinbayes.roughness import named_surface, rms_height, rms_slope, total_area_ratio
 
 INSIDE = 1e-12  # relative distance from an end
 SURFACES = ("free", "no plateau", "plateau only", "H = 1", "narrow")
@@ -57,13 +58,7 @@ def surfaces(kind, count, off=0.0):
     elif kind == "narrow":
         last = first * (1 + 1e-6)
         knee = first
-    return SelfAffineSpectrum(
-        rms_height=height,
-        hurst_exponent=hurst,
-        wavevector_min=first,
-        wavevector_rolloff=knee,
-        wavevector_max=last,
-    )
+    return surface_from((height, hurst, first, knee, last))
 
 
 def skins(kind, count, off=0.0):
@@ -84,13 +79,7 @@ def skins(kind, count, off=0.0):
         thickness = np.full(count, 1e-15)
     elif kind == "thick":
         thickness = np.full(count, 1e3)
-    return LayeredSkin(
-        young_modulus_layer=layer,
-        young_modulus_bulk=bulk,
-        poisson_ratio_layer=upper,
-        poisson_ratio_bulk=lower,
-        layer_thickness=thickness,
-    )
+    return skin_from((layer, bulk, upper, lower, thickness))
 
 
 def loads(twice_variance):
@@ -154,19 +143,9 @@ def test_edges_of_spectra_and_skins_in_wide_boxes(surface, skin):
 @pytest.mark.parametrize("end", ["wavevector_min", "wavevector_max"])
 def test_a_spectrum_without_plateau_or_without_decay_has_an_inverse(end):
     rng = np.random.default_rng(1)
-    surface = SelfAffineSpectrum(
-        rms_height=22.4e-6,
-        hurst_exponent=0.78,
-        wavevector_min=1e3,
-        wavevector_rolloff=1e3 if end == "wavevector_min" else 1e6,
-        wavevector_max=1e6,
-    )
+    surface = surface_from((22.4e-6, 0.78, 1e3, 1e3 if end == "wavevector_min" else 1e6, 1e6))
     skin = LayeredSkin(
-        young_modulus_layer=between(rng, 1e5, 1e9, 300),
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
+        young_modulus_layer=between(rng, 1e5, 1e9, 300), young_modulus_bulk=20e3, layer_thickness=20e-6
     )
     pressure = between(rng, 10.0, 1e6, 300)
     mean = mean_separation(pressure[:, None], surface, skin=skin)
@@ -228,13 +207,7 @@ def test_edges_of_the_response():
 
 def test_separation_at_its_ends():
     skin, surface = (
-        LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=20e3,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
         named_surface("paper_reference"),
     )
     assert mean_separation(0.0, surface, skin=skin) == np.inf
@@ -275,32 +248,16 @@ def test_true_area_at_its_ends():
 
 def test_empty_batches_are_empty():
     none = np.empty(0)
-    surface, skin = (
-        named_surface("paper_reference"),
-        LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=20e3,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
-    )
-    no_surface = SelfAffineSpectrum(
-        rms_height=none, hurst_exponent=0.78, wavevector_min=1e3, wavevector_rolloff=1e3, wavevector_max=1e9
-    )
-    no_skin = LayeredSkin(
-        young_modulus_layer=none,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    )
-    for body in ((no_surface, skin), (surface, no_skin)):
-        assert twice_stress_variance(*body).shape == (0,)
-        assert mean_separation(6830.0, *body).shape == (0,)
-        assert pressure_at_separation(1e-5, *body).shape == (0,)
-        assert gap_distribution(6830.0, *body).mean.shape == (0,)
-        assert mean_separation(none, *body).shape == (0, 0)
+    surface = named_surface("paper_reference")
+    skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    no_surface = surface_from((none, 0.78, 1e3, 1e3, 1e9))
+    no_skin = LayeredSkin(young_modulus_layer=none, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    for rough, body in ((no_surface, skin), (surface, no_skin)):
+        assert twice_stress_variance(rough, body).shape == (0,)
+        assert mean_separation(6830.0, rough, skin=body).shape == (0,)
+        assert pressure_at_separation(1e-5, rough, skin=body).shape == (0,)
+        assert gap_distribution(6830.0, rough, skin=body).mean.shape == (0,)
+        assert mean_separation(none, rough, skin=body).shape == (0, 0)
     assert mean_separation(none, surface, skin=skin).shape == (0,)
     assert gap_distribution(none, surface, skin=skin).cumulative(1e-6).shape == (0,)
     assert relative_contact_area(none, 1e14).shape == (0,)

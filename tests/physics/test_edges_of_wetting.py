@@ -4,6 +4,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 
 from skinbayes.contact import (
     LayeredSkin,
@@ -12,7 +13,7 @@ from skinbayes.contact import (
     relative_contact_area,
     twice_stress_variance,
 )
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import named_surface
 from skinbayes.wetting import (
     capillary_state,
     capillary_state_at_gap,
@@ -31,13 +32,7 @@ from skinbayes.wetting import (
 )
 
 SURFACE = named_surface("paper_reference")
-SOFT = LayeredSkin(
-    young_modulus_layer=7e6,
-    young_modulus_bulk=20e3,
-    poisson_ratio_layer=0.5,
-    poisson_ratio_bulk=0.5,
-    layer_thickness=20e-6,
-)
+SOFT = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 LOAD, ROOM, ANGLE = 6830.0, 293.15, np.radians(80.0)
 WATER = (
     surface_tension_of_water,
@@ -68,19 +63,19 @@ def skin_samples(count, seed):
         return np.exp(rng.uniform(np.log(low), np.log(high), count))
 
     first = between(3e2, 5e3)
-    surface = SelfAffineSpectrum(
-        rms_height=between(5e-6, 5e-5),
-        hurst_exponent=rng.uniform(0.6, 1.0, count),
-        wavevector_min=first,
-        wavevector_rolloff=first * between(1.0, 10.0),
-        wavevector_max=between(1e8, 1e9),
+    surface = surface_from(
+        (
+            between(5e-6, 5e-5),
+            rng.uniform(0.6, 1.0, count),
+            first,
+            first * between(1.0, 10.0),
+            between(1e8, 1e9),
+        )
     )
     bulk = between(1e4, 1e5)
     skin = LayeredSkin(
         young_modulus_layer=bulk * between(10.0, 1e5),
         young_modulus_bulk=bulk,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
         layer_thickness=between(1e-5, 4e-5),
     )
     return surface, skin, between(2e3, 5e4), rng.uniform(0.5, np.pi, count), rng.uniform(0.0, 0.7, count)
@@ -136,16 +131,7 @@ def test_saturated_air_is_the_limit_of_humid_air():
 
 
 def test_dry_air_is_the_limit_of_dry_air():
-    for skin in (
-        SOFT,
-        LayeredSkin(
-            young_modulus_layer=1e9,
-            young_modulus_bulk=20e3,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
-    ):
+    for skin in (SOFT, LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)):
         pulls = in_air([1e-300, 1e-30, 0.0], skin).capillary_pressure
         assert pulls[2] > 0
         np.testing.assert_allclose(pulls[:2], pulls[2], rtol=2e-3)
@@ -262,13 +248,7 @@ def test_films_at_their_ends():
 
 def test_empty_batches_are_empty():
     none = np.empty(0)
-    nobody = LayeredSkin(
-        young_modulus_layer=none,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    )
+    nobody = LayeredSkin(young_modulus_layer=none, young_modulus_bulk=20e3, layer_thickness=20e-6)
     assert in_air(none).wet_area.shape == (0,)
     assert in_air(0.5, nobody).wet_area.shape == (0,)
     assert capillary_state(

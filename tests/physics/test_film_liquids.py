@@ -210,7 +210,7 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
             nodes=120,
         )
         modulus = float(reduced_modulus(parameters["young_modulus_bulk"], 0.5))
-        radius, load = cylinder_of_sphere(
+        load, radius = cylinder_of_sphere(
             parameters["normal_force"], parameters["sphere_radius"], reduced_modulus=modulus
         )
         law = asperity_law(spectrum_of(parameters), skin_of(parameters))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from named_fields import skin_from, surface_from
 
 from skinbayes.contact import LayeredSkin
 from skinbayes.lubrication import (
@@ -12,7 +13,7 @@ from skinbayes.lubrication import (
     tabulated_friction,
 )
 from skinbayes.lubrication.film_axes import range_logarithms
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import named_surface
 
 BOX = {
     "young_modulus_layer": (1e6, 30e6),
@@ -26,20 +27,10 @@ BOX = {
 def solve(parameters, product, stress, nodes):
     layer, bulk, height, radius, force, thickness = parameters
     shape = named_surface("paper_reference")
-    surface = SelfAffineSpectrum(
-        rms_height=height,
-        hurst_exponent=shape.hurst_exponent,
-        wavevector_min=shape.wavevector_min,
-        wavevector_rolloff=shape.wavevector_rolloff,
-        wavevector_max=shape.wavevector_max,
+    surface = surface_from(
+        (height, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max)
     )
-    skin = LayeredSkin(
-        young_modulus_layer=layer,
-        young_modulus_bulk=bulk,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=thickness,
-    )
+    skin = LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=thickness)
     return stribeck_curve(
         product,
         sphere_radius=radius,
@@ -96,25 +87,15 @@ def test_layer_thickness_and_poisson_ratios():
     )
     assert table.axes.names == ("young_modulus_bulk", "layer_thickness")
     rng = np.random.default_rng(5)
-    surface = SelfAffineSpectrum(
-        rms_height=20e-6,
-        hurst_exponent=shape.hurst_exponent,
-        wavevector_min=shape.wavevector_min,
-        wavevector_rolloff=shape.wavevector_rolloff,
-        wavevector_max=shape.wavevector_max,
+    surface = surface_from(
+        (20e-6, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max)
     )
     products = np.geomspace(1e-5, 0.05, 8)
     for _ in range(12):
         bulk, thickness = np.exp(rng.uniform(np.log([1e4, 15e-6]), np.log([1e5, 200e-6])))
         named = {name: low for name, (low, _) in ranges.items()}
         named |= {"young_modulus_bulk": bulk, "layer_thickness": thickness}
-        skin = LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=bulk,
-            poisson_ratio_layer=0.4,
-            poisson_ratio_bulk=0.45,
-            layer_thickness=thickness,
-        )
+        skin = skin_from((7e6, bulk, 0.4, 0.45, thickness))
         wanted = stribeck_curve(
             products,
             sphere_radius=8e-3,

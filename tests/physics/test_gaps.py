@@ -19,15 +19,9 @@ from skinbayes.contact import (
     twice_stress_variance,
 )
 from skinbayes.errors import InputError
-from skinbayes.roughness import SelfAffineSpectrum, TabulatedSpectrum, named_surface
+from skinbayes.roughness import TabulatedSpectrum, named_surface
 
-WET = LayeredSkin(
-    young_modulus_layer=7e6,
-    young_modulus_bulk=20e3,
-    poisson_ratio_layer=0.5,
-    poisson_ratio_bulk=0.5,
-    layer_thickness=20e-6,
-)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 SHARES = np.array([0.02, 0.1, 0.3, 0.6, 1, 1.4, 2, 3])
 
 
@@ -131,8 +125,7 @@ def test_area_and_mean_are_those_of_the_theory(closure):
 def test_film_is_the_moment_of_the_distribution(closure):
     gaps, *_ = some_gaps(closure, 3)
     for i in range(3):
-        one = GapDistribution(*(np.asarray(x)[i, 1] for x in (
-            gaps.mean, gaps.contact_fraction, gaps.location, gaps.width, gaps.weight)))  # fmt: skip
+        one = GapDistribution(**{name: np.asarray(value)[i, 1] for name, value in vars(gaps).items()})
         for d in one.mean * np.array([0.01, 0.4, 1.0, 3.0]):
             # by parts: ∫ u dF = d F(d) − ∫ F du
             breaks = np.append(0, np.geomspace(d * 1e-4, d, 60))
@@ -173,34 +166,12 @@ def test_only_ratios_of_pressures_and_of_lengths_matter():
     p = (reach * np.sqrt(twice_stress_variance(surface, skin_from(skin))))[:, None]
     first = gap_distribution(p, surface, skin=skin_from(skin))
     at = first.mean[..., None] * SHARES
-    stiffer = gap_distribution(
-        7 * p,
-        surface,
-        skin=LayeredSkin(
-            young_modulus_layer=7 * e0,
-            young_modulus_bulk=7 * e1,
-            poisson_ratio_layer=nu0,
-            poisson_ratio_bulk=nu1,
-            layer_thickness=d,
-        ),
-    )
+    stiffer = gap_distribution(7 * p, surface, skin=skin_from((7 * e0, 7 * e1, nu0, nu1, d)))
     h, hurst, q0, q_r, q1 = roughness
     larger = gap_distribution(
         p,
-        SelfAffineSpectrum(
-            rms_height=3 * h,
-            hurst_exponent=hurst,
-            wavevector_min=q0 / 3,
-            wavevector_rolloff=q_r / 3,
-            wavevector_max=q1 / 3,
-        ),
-        skin=LayeredSkin(
-            young_modulus_layer=e0,
-            young_modulus_bulk=e1,
-            poisson_ratio_layer=nu0,
-            poisson_ratio_bulk=nu1,
-            layer_thickness=3 * d,
-        ),
+        surface_from((3 * h, hurst, q0 / 3, q_r / 3, q1 / 3)),
+        skin=skin_from((e0, e1, nu0, nu1, 3 * d)),
     )
     np.testing.assert_allclose(stiffer.cumulative(at), first.cumulative(at), atol=1e-9)
     np.testing.assert_allclose(larger.cumulative(3 * at), first.cumulative(at), atol=1e-9)
@@ -243,8 +214,11 @@ def test_batch_and_rows_agree_to_the_last_bit(closure):
         p, surface_from(roughness), skin=skin_from(skin), area_correction=gamma, closure=closure
     )
     for i in range(9):
-        one = surface_from(x[i] for x in roughness), skin_from(x[i] for x in skin), gamma[i]
-        row, alone = gap_distribution(p, *one, closure), gap_distribution(p[3], *one, closure)
+        surface, one = surface_from(x[i] for x in roughness), skin_from(x[i] for x in skin)
+        row, alone = (
+            gap_distribution(load, surface, skin=one, area_correction=gamma[i], closure=closure)
+            for load in (p, p[3])
+        )
         for name in ("mean", "contact_fraction", "location", "width", "weight"):
             assert identical(getattr(row, name), getattr(whole, name)[i])
             assert identical(getattr(alone, name), getattr(whole, name)[i, 3])
@@ -257,13 +231,7 @@ def test_table_and_closed_spectrum_agree():
     surface = named_surface("paper_reference")
     q = np.union1d(np.geomspace(1e3, 1e9, 60), [surface.wavevector_rolloff])
     table = TabulatedSpectrum(q, surface.power(q), scale=np.array([1.0, 4.0]))
-    closed = SelfAffineSpectrum(
-        rms_height=22.4e-6 * np.array([1.0, 2.0]),
-        hurst_exponent=0.78,
-        wavevector_min=1e3,
-        wavevector_rolloff=6.345e3,
-        wavevector_max=1e9,
-    )
+    closed = surface_from((22.4e-6 * np.array([1.0, 2.0]), 0.78, 1e3, 6.345e3, 1e9))
     p, d = np.geomspace(1e3, 1e6, 5), np.geomspace(1e-7, 1e-4, 20)
     found = gap_distribution(p, table, skin=WET)
     np.testing.assert_allclose(
@@ -284,19 +252,9 @@ def test_the_closures_differ_where_the_paper_needs_it():
 
 
 def test_shapes_nan_and_messages():
-    surface = SelfAffineSpectrum(
-        rms_height=np.array([[1e-5], [-1e-5], [2e-5]]),
-        hurst_exponent=0.8,
-        wavevector_min=1e3,
-        wavevector_rolloff=1e4,
-        wavevector_max=1e9,
-    )
+    surface = surface_from((np.array([[1e-5], [-1e-5], [2e-5]]), 0.8, 1e3, 1e4, 1e9))
     skin = LayeredSkin(
-        young_modulus_layer=np.array([[7e6, 1e9]]),
-        young_modulus_bulk=2e4,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=2e-5,
+        young_modulus_layer=np.array([[7e6, 1e9]]), young_modulus_bulk=2e4, layer_thickness=2e-5
     )
     gaps = gap_distribution([7e3, 1e4, 2e4, -1.0], surface, skin=skin)
     assert gaps.mean.shape == gaps.contact_fraction.shape == (3, 2, 4)

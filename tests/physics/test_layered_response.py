@@ -92,7 +92,7 @@ MATERIALS = [
 @pytest.mark.parametrize("material", MATERIALS)
 def test_response_agrees_with_a_solution_of_the_layer_problem(material):
     thickness = 20e-6
-    skin = LayeredSkin(*material, thickness)
+    skin = skin_from((*material, thickness))
     x = np.array([1e-4, 3e-3, 0.05, 0.3, 1.0, 2.7, 6.0, 15.0])
     expected = [response_by_linear_system(*material, value) for value in x]
     np.testing.assert_allclose(surface_response(skin, x / thickness), expected, rtol=2e-11)
@@ -104,14 +104,7 @@ def test_soft_layer_on_stiff_ground(ratio):
     expected = [response_by_linear_system(2e4 * ratio, 2e4, 0.5, 0.5, value) for value in x]
     np.testing.assert_allclose(
         surface_response(
-            LayeredSkin(
-                young_modulus_layer=2e4 * ratio,
-                young_modulus_bulk=2e4,
-                poisson_ratio_layer=0.5,
-                poisson_ratio_bulk=0.5,
-                layer_thickness=1.0,
-            ),
-            x,
+            LayeredSkin(young_modulus_layer=2e4 * ratio, young_modulus_bulk=2e4, layer_thickness=1.0), x
         ),
         expected,
         rtol=1e-9,
@@ -137,13 +130,7 @@ def test_no_layer_is_no_layer():
 
 @given(st.floats(1e-3, 1e7), st.floats(-0.9, 0.5), st.floats(-0.9, 0.5), st.floats(1e-7, 1e-3))
 def test_limits_of_the_response(ratio, nu0, nu1, thickness):
-    skin = LayeredSkin(
-        young_modulus_layer=2e4 * ratio,
-        young_modulus_bulk=2e4,
-        poisson_ratio_layer=nu0,
-        poisson_ratio_bulk=nu1,
-        layer_thickness=thickness,
-    )
+    skin = skin_from((2e4 * ratio, 2e4, nu0, nu1, thickness))
     static = reduced_modulus(2e4 * ratio, nu0) / reduced_modulus(2e4, nu1)
     response = surface_response(skin, [0.0, 1e-9 / thickness, 60 / thickness])
     assert response[0] == pytest.approx(static, rel=1e-9)
@@ -153,16 +140,7 @@ def test_limits_of_the_response(ratio, nu0, nu1, thickness):
 
 @given(st.floats(1.01, 1e7), st.floats(0.0, 0.5))
 def test_a_stiff_layer_hides_the_bulk_more_at_larger_wavevectors(ratio, nu):
-    response = surface_response(
-        LayeredSkin(
-            young_modulus_layer=ratio,
-            young_modulus_bulk=1.0,
-            poisson_ratio_layer=nu,
-            poisson_ratio_bulk=nu,
-            layer_thickness=1.0,
-        ),
-        np.geomspace(1e-6, 20, 200),
-    )
+    response = surface_response(skin_from((ratio, 1.0, nu, nu, 1.0)), np.geomspace(1e-6, 20, 200))
     assert np.all(np.diff(response) <= 1e-12 * response[:-1])
 
 
@@ -170,8 +148,6 @@ def test_shapes():
     skin = LayeredSkin(
         young_modulus_layer=np.full((3, 1), 7e6),
         young_modulus_bulk=2e4,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
         layer_thickness=np.full((1, 2), 2e-5),
     )
     assert surface_response(skin, np.geomspace(1e3, 1e8, 5)).shape == (3, 2, 5)

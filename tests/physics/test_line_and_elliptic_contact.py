@@ -90,7 +90,7 @@ def test_near_the_circle_no_digits_are_lost():
 @pytest.mark.parametrize("radii", [(8e-3, 8e-3), (8e-3, 16e-3), (8e-3, 0.4), (16e-3, 8e-3)])
 def test_elliptic_pressure_carries_the_load_and_flattens_the_body(radii):
     force, modulus = 0.3, 5e4
-    contact = elliptic_contact(force, *radii, modulus)
+    contact = elliptic_contact(force, radii[0], radius_across=radii[1], reduced_modulus=modulus)
     a, b = contact.semi_axis_along, contact.semi_axis_across
     assert contact.maximum_pressure * 2 / 3 * np.pi * a * b == pytest.approx(force, rel=1e-12)
     assert contact.mean_pressure * np.pi * a * b == pytest.approx(force, rel=1e-12)
@@ -107,7 +107,7 @@ def test_elliptic_pressure_carries_the_load_and_flattens_the_body(radii):
 
 def test_displacement_of_an_elliptic_contact_by_brute_force():
     force, modulus, radii = 0.3, 5e4, (8e-3, 24e-3)
-    contact = elliptic_contact(force, *radii, modulus)
+    contact = elliptic_contact(force, radii[0], radius_across=radii[1], reduced_modulus=modulus)
     a, b = contact.semi_axis_along, contact.semi_axis_across
 
     def displacement(x):

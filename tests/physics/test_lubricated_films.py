@@ -16,17 +16,11 @@ from skinbayes.lubrication.flow_factors import TrivialFlowFactors
 from skinbayes.roughness import named_surface
 
 WET, SURFACE = (
-    LayeredSkin(
-        young_modulus_layer=7e6,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    ),
+    LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
     named_surface("paper_reference"),
 )
 MODULUS = float(reduced_modulus(20e3, 0.5))
-RADIUS, LOAD = (float(x) for x in cylinder_of_sphere(0.2, 8e-3, reduced_modulus=MODULUS))
+LOAD, RADIUS = (float(x) for x in cylinder_of_sphere(0.2, 8e-3, reduced_modulus=MODULUS))
 HERTZ = line_contact(LOAD, RADIUS, reduced_modulus=MODULUS)
 PER_PRODUCT = lubrication_number_per_product(RADIUS, HERTZ)
 

@@ -15,6 +15,7 @@ from lubricated_sphere import (
     polar_grid,
     sector_kernel,
 )
+from named_fields import surface_from
 from scipy.interpolate import CubicSpline
 from scipy.special import ellipe, ellipk
 
@@ -27,7 +28,7 @@ from skinbayes.contact import (
     twice_stress_variance,
 )
 from skinbayes.lubrication import asperity_law, lubricated_films, stribeck_curve
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import named_surface
 
 # What the map is worth, sphere over cylinder with the whole inlet of its parabola: (smallest, largest) that is accepted
 FIGURE_11 = {
@@ -49,13 +50,7 @@ FLANK = (1.15, 1.32)  # speed at which asperities carry half of the load, skin u
 
 GLASS_BALL, PAPER_SKIN = (
     (8e-3, 0.2, 20e3 / 0.75),
-    LayeredSkin(
-        young_modulus_layer=7e6,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    ),
+    LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
 )
 FIGURE_11_BALL = (1e-2, 1.3, 1.6e6)
 
@@ -326,23 +321,11 @@ def test_skin_sphere_and_cylinder():
 def test_flank_of_other_balls(bulk, layer, height, radius, force):
     ball, skin = (
         (radius, force, reduced_modulus(bulk, 0.5)),
-        LayeredSkin(
-            young_modulus_layer=layer,
-            young_modulus_bulk=bulk,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=20e-6),
     )
-    spectrum = SelfAffineSpectrum(
-        rms_height=height,
-        hurst_exponent=0.78,
-        wavevector_min=1e3,
-        wavevector_rolloff=6.345e3,
-        wavevector_max=1e9,
-    )
+    spectrum = surface_from((height, 0.78, 1e3, 6.345e3, 1e9))
     # smooth surfaces would be 0.4 λ^0.6 a²/R apart; from where asperities keep them as far apart on, they lose the load
-    hertz = sphere_contact(*(ball[1], ball[0], ball[2]))
+    hertz = sphere_contact(ball[1], ball[0], reduced_modulus=ball[2])
     rough = asperity_law(spectrum, skin).separation_at(float(hertz.maximum_pressure))
     middle = (rough * radius / hertz.contact_radius**2 / 0.4) ** (1 / 0.6) / number_of(1.0, *ball)
     products = middle * np.geomspace(0.2, 10.0, 7)

@@ -18,13 +18,7 @@ from skinbayes.lubrication import (
 from skinbayes.roughness import named_surface
 
 WET, SURFACE = (
-    LayeredSkin(
-        young_modulus_layer=7e6,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    ),
+    LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
     named_surface("paper_reference"),
 )
 

@@ -18,13 +18,7 @@ from skinbayes.contact import (
 from skinbayes.contact.separation_tables import closing_function
 from skinbayes.roughness import SelfAffineSpectrum, TabulatedSpectrum, named_surface, rms_height
 
-WET = LayeredSkin(
-    young_modulus_layer=7e6,
-    young_modulus_bulk=20e3,
-    poisson_ratio_layer=0.5,
-    poisson_ratio_bulk=0.5,
-    layer_thickness=20e-6,
-)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 
 
 def random_parameters(count, seed):
@@ -174,24 +168,12 @@ def test_very_thick_and_very_thin_layers_are_half_spaces(thickness, modulus):
     layered = mean_separation(
         p,
         surface,
-        skin=LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=20e3,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=thickness,
-        ),
+        skin=LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=thickness),
     )
     plain = mean_separation(
         p,
         surface,
-        skin=LayeredSkin(
-            young_modulus_layer=modulus,
-            young_modulus_bulk=modulus,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=2e-5,
-        ),
+        skin=LayeredSkin(young_modulus_layer=modulus, young_modulus_bulk=modulus, layer_thickness=2e-5),
     )
     np.testing.assert_allclose(layered, plain, rtol=1e-3)
 
@@ -201,36 +183,10 @@ def test_only_ratios_of_pressures_and_of_lengths_matter():
     surface, (e0, e1, nu0, nu1, d) = surface_from(roughness), skin
     p = reach * np.sqrt(twice_stress_variance(surface, skin_from(skin)))
     first = mean_separation(p[:, None], surface, skin=skin_from(skin))
-    stiffer = mean_separation(
-        30 * p[:, None],
-        surface,
-        skin=LayeredSkin(
-            young_modulus_layer=30 * e0,
-            young_modulus_bulk=30 * e1,
-            poisson_ratio_layer=nu0,
-            poisson_ratio_bulk=nu1,
-            layer_thickness=d,
-        ),
-    )
+    stiffer = mean_separation(30 * p[:, None], surface, skin=skin_from((30 * e0, 30 * e1, nu0, nu1, d)))
     h, hurst, q0, q_r, q1 = roughness
-    larger = SelfAffineSpectrum(
-        rms_height=5 * h,
-        hurst_exponent=hurst,
-        wavevector_min=q0 / 5,
-        wavevector_rolloff=q_r / 5,
-        wavevector_max=q1 / 5,
-    )
-    magnified = mean_separation(
-        p[:, None],
-        larger,
-        skin=LayeredSkin(
-            young_modulus_layer=e0,
-            young_modulus_bulk=e1,
-            poisson_ratio_layer=nu0,
-            poisson_ratio_bulk=nu1,
-            layer_thickness=5 * d,
-        ),
-    )
+    larger = surface_from((5 * h, hurst, q0 / 5, q_r / 5, q1 / 5))
+    magnified = mean_separation(p[:, None], larger, skin=skin_from((e0, e1, nu0, nu1, 5 * d)))
     np.testing.assert_allclose(stiffer, first, rtol=1e-9)
     np.testing.assert_allclose(magnified, 5 * first, rtol=1e-9)
 
@@ -241,33 +197,9 @@ def test_separation_falls_with_pressure_and_rises_with_modulus():
     p = np.geomspace(1e-3, 3, 60) * np.sqrt(twice_stress_variance(surface, skin_from(skin)))[:, None]
     first = mean_separation(p, surface, skin=skin_from(skin))
     assert np.all(np.diff(first) < 0)
+    assert np.all(mean_separation(p, surface, skin=skin_from((1.1 * e0, e1, nu0, nu1, d))) > first)
     assert np.all(
-        mean_separation(
-            p,
-            surface,
-            skin=LayeredSkin(
-                young_modulus_layer=1.1 * e0,
-                young_modulus_bulk=e1,
-                poisson_ratio_layer=nu0,
-                poisson_ratio_bulk=nu1,
-                layer_thickness=d,
-            ),
-        )
-        > first
-    )
-    assert np.all(
-        mean_separation(
-            p,
-            surface,
-            skin=LayeredSkin(
-                young_modulus_layer=e0,
-                young_modulus_bulk=1.1 * e1,
-                poisson_ratio_layer=nu0,
-                poisson_ratio_bulk=nu1,
-                layer_thickness=d,
-            ),
-        )
-        > first * (1 - 1e-6)
+        mean_separation(p, surface, skin=skin_from((e0, 1.1 * e1, nu0, nu1, d))) > first * (1 - 1e-6)
     )
 
 
@@ -353,13 +285,7 @@ def test_table_and_closed_spectrum_agree():
     surface = named_surface("paper_reference")
     q = np.union1d(np.geomspace(1e3, 1e9, 60), [surface.wavevector_rolloff])
     table = TabulatedSpectrum(q, surface.power(q), scale=np.array([1.0, 4.0]))
-    closed = SelfAffineSpectrum(
-        rms_height=22.4e-6 * np.array([1.0, 2.0]),
-        hurst_exponent=0.78,
-        wavevector_min=1e3,
-        wavevector_rolloff=6.345e3,
-        wavevector_max=1e9,
-    )
+    closed = surface_from((22.4e-6 * np.array([1.0, 2.0]), 0.78, 1e3, 6.345e3, 1e9))
     p = np.geomspace(1e2, 1e7, 11)
     np.testing.assert_allclose(
         mean_separation(p, table, skin=WET), mean_separation(p, closed, skin=WET), rtol=2e-4
@@ -367,19 +293,9 @@ def test_table_and_closed_spectrum_agree():
 
 
 def test_shapes_and_nan():
-    surface = SelfAffineSpectrum(
-        rms_height=np.array([[1e-5], [-1e-5], [2e-5]]),
-        hurst_exponent=0.8,
-        wavevector_min=1e3,
-        wavevector_rolloff=1e4,
-        wavevector_max=1e9,
-    )
+    surface = surface_from((np.array([[1e-5], [-1e-5], [2e-5]]), 0.8, 1e3, 1e4, 1e9))
     skin = LayeredSkin(
-        young_modulus_layer=np.array([[7e6, 1e9]]),
-        young_modulus_bulk=2e4,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=2e-5,
+        young_modulus_layer=np.array([[7e6, 1e9]]), young_modulus_bulk=2e4, layer_thickness=2e-5
     )
     for function, at in ((mean_separation, 7e3), (pressure_at_separation, 1e-5)):
         assert function(at, surface, skin).shape == (3, 2)
@@ -405,15 +321,5 @@ def test_a_plateau_may_vanish():
         ),
         skin=WET,
     )
-    tiny = mean_separation(
-        p,
-        SelfAffineSpectrum(
-            rms_height=2e-5,
-            hurst_exponent=0.8,
-            wavevector_min=1e3,
-            wavevector_rolloff=1e3 * (1 + 1e-9),
-            wavevector_max=1e9,
-        ),
-        skin=WET,
-    )
+    tiny = mean_separation(p, surface_from((2e-5, 0.8, 1e3, 1e3 * (1 + 1e-9), 1e9)), skin=WET)
     np.testing.assert_allclose(tiny, none, rtol=1e-7)

@@ -10,7 +10,6 @@ from scipy.integrate import quad
 from skinbayes.errors import InputError
 from skinbayes.roughness import (
     SURFACES,
-    SelfAffineSpectrum,
     named_surface,
     rms_height,
     rms_slope,
@@ -81,15 +80,7 @@ def test_textbook_slope_without_plateau():
         * q0
         * np.sqrt(hurst / (1 - hurst) * (ratio ** (2 - 2 * hurst) - 1) / (1 - ratio ** (-2 * hurst)))
     )
-    assert rms_slope(
-        SelfAffineSpectrum(
-            rms_height=height,
-            hurst_exponent=hurst,
-            wavevector_min=q0,
-            wavevector_rolloff=q0,
-            wavevector_max=q1,
-        )
-    ) == pytest.approx(expected, rel=1e-12)
+    assert rms_slope(surface_from((height, hurst, q0, q0, q1))) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("slope", [1e-3, 0.1, 0.88, 2.8, 30.0, 1e4])
@@ -160,13 +151,7 @@ def test_impossible_parameters_give_nan_and_a_message(case):
 
 
 def test_one_bad_member_leaves_the_others_alone():
-    batch = SelfAffineSpectrum(
-        rms_height=[1e-6, -1e-6, 2e-6],
-        hurst_exponent=0.8,
-        wavevector_min=1e3,
-        wavevector_rolloff=1e4,
-        wavevector_max=1e8,
-    )
+    batch = surface_from(([1e-6, -1e-6, 2e-6], 0.8, 1e3, 1e4, 1e8))
     slopes = rms_slope(batch)
     assert np.isnan(slopes[1]) and slopes[2] == pytest.approx(2 * slopes[0], rel=1e-14)
     with pytest.raises(InputError, match="rms_height is -1e-06 m"):
@@ -174,13 +159,7 @@ def test_one_bad_member_leaves_the_others_alone():
 
 
 def test_shapes():
-    batch = SelfAffineSpectrum(
-        rms_height=np.full((3, 1), 1e-6),
-        hurst_exponent=np.full((1, 2), 0.8),
-        wavevector_min=1e3,
-        wavevector_rolloff=1e4,
-        wavevector_max=1e8,
-    )
+    batch = surface_from((np.full((3, 1), 1e-6), np.full((1, 2), 0.8), 1e3, 1e4, 1e8))
     assert batch.power(np.geomspace(1e3, 1e8, 5)).shape == (3, 2, 5)
     assert batch.power(1e5).shape == (3, 2)
     assert rms_slope(batch).shape == (3, 2)
@@ -191,19 +170,7 @@ def test_shapes():
 )
 def test_more_bandwidth_means_more_slope(height, hurst, q0, plateau, width):
     q_r = q0 * plateau
-    narrow = SelfAffineSpectrum(
-        rms_height=height,
-        hurst_exponent=hurst,
-        wavevector_min=q0,
-        wavevector_rolloff=q_r,
-        wavevector_max=q_r * width,
-    )
+    narrow = surface_from((height, hurst, q0, q_r, q_r * width))
     validate_spectrum(narrow)
-    wide = SelfAffineSpectrum(
-        rms_height=height,
-        hurst_exponent=hurst,
-        wavevector_min=q0,
-        wavevector_rolloff=q_r,
-        wavevector_max=q_r * width * 2,
-    )
+    wide = surface_from((height, hurst, q0, q_r, q_r * width * 2))
     assert 0 < rms_slope(narrow) < rms_slope(wide)

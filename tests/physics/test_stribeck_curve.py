@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 from scipy.interpolate import CubicSpline
 
 from skinbayes.contact import LayeredSkin, reduced_modulus, relative_contact_area, twice_stress_variance
@@ -35,19 +36,9 @@ def curve(speeds=SPEEDS, nodes=100, flow_factors=None, rheology=None, **changes)
         sphere_radius=case["radius"],
         normal_force=case["force"],
         skin=LayeredSkin(
-            young_modulus_layer=case["layer"],
-            young_modulus_bulk=case["bulk"],
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
+            young_modulus_layer=case["layer"], young_modulus_bulk=case["bulk"], layer_thickness=20e-6
         ),
-        spectrum=SelfAffineSpectrum(
-            rms_height=case["h"],
-            hurst_exponent=0.78,
-            wavevector_min=1e3,
-            wavevector_rolloff=6.345e3,
-            wavevector_max=1e9,
-        ),
+        spectrum=surface_from((case["h"], 0.78, 1e3, 6.345e3, 1e9)),
         frictional_shear_stress=case["stress"],
         flow_factors=flow_factors,
         rheology=rheology,
@@ -101,13 +92,7 @@ def test_slow_limit_is_dry_friction_at_the_nominal_pressure():
             wavevector_rolloff=6.345e3,
             wavevector_max=1e9,
         ),
-        LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=2e4,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=2e-5,
-        ),
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=2e-5),
     )
     area = relative_contact_area(5000.0, twice_stress_variance(spectrum, skin))
     assert curve([1e-11]).friction_coefficient[0] == pytest.approx(PAPER["stress"] * area / 5000, rel=2e-3)
@@ -117,13 +102,7 @@ def test_slow_limit_is_dry_friction_at_the_nominal_pressure():
 def test_boundary_part_saturates_where_contact_is_nearly_complete():
     # soft skin without a stiff layer: A/A0 is far from proportional to the pressure, which is nearly that of Hertz
     skin, flat = (
-        LayeredSkin(
-            young_modulus_layer=2e4,
-            young_modulus_bulk=2e4,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        LayeredSkin(young_modulus_layer=2e4, young_modulus_bulk=2e4, layer_thickness=20e-6),
         SelfAffineSpectrum(
             rms_height=2e-6,
             hurst_exponent=0.8,
@@ -201,13 +180,7 @@ def test_figure_20_flow_factors(paper):
             wavevector_rolloff=6.345e3,
             wavevector_max=1e9,
         ),
-        LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=2e4,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=20e-6),
     )
 
     class FlowOnly:
@@ -265,13 +238,7 @@ def test_shift_factor_shifts():
         [1e-3, 1e-2],
         sphere_radius=8e-3,
         normal_force=0.2,
-        skin=LayeredSkin(
-            young_modulus_layer=7e6,
-            young_modulus_bulk=2e4,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        skin=LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=20e-6),
         spectrum=named_surface("paper_reference"),
         frictional_shear_stress=15e6,
         velocity_shift_factor=20.0,
@@ -300,20 +267,8 @@ def test_similarity_of_ball_sizes():
 
 
 def test_batches_are_rows():
-    skin = LayeredSkin(
-        young_modulus_layer=[7e6, 2e7],
-        young_modulus_bulk=[2e4, 4e4],
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    )
-    surface = SelfAffineSpectrum(
-        rms_height=[22.4e-6, 10e-6],
-        hurst_exponent=0.78,
-        wavevector_min=1e3,
-        wavevector_rolloff=6.345e3,
-        wavevector_max=1e9,
-    )
+    skin = LayeredSkin(young_modulus_layer=[7e6, 2e7], young_modulus_bulk=[2e4, 4e4], layer_thickness=20e-6)
+    surface = surface_from(([22.4e-6, 10e-6], 0.78, 1e3, 6.345e3, 1e9))
     force = np.array([[0.1], [0.2], [0.4]])
     speeds = np.array([1e-4, 1e-2])
     found = stribeck_curve(
@@ -331,13 +286,7 @@ def test_batches_are_rows():
         speeds,
         sphere_radius=8e-3,
         normal_force=0.4,
-        skin=LayeredSkin(
-            young_modulus_layer=2e7,
-            young_modulus_bulk=4e4,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        skin=LayeredSkin(young_modulus_layer=2e7, young_modulus_bulk=4e4, layer_thickness=20e-6),
         spectrum=SelfAffineSpectrum(
             rms_height=10e-6,
             hurst_exponent=0.78,
@@ -353,13 +302,7 @@ def test_batches_are_rows():
         1e-2,
         sphere_radius=8e-3,
         normal_force=0.4,
-        skin=LayeredSkin(
-            young_modulus_layer=2e7,
-            young_modulus_bulk=4e4,
-            poisson_ratio_layer=0.5,
-            poisson_ratio_bulk=0.5,
-            layer_thickness=20e-6,
-        ),
+        skin=LayeredSkin(young_modulus_layer=2e7, young_modulus_bulk=4e4, layer_thickness=20e-6),
         spectrum=SelfAffineSpectrum(
             rms_height=10e-6,
             hurst_exponent=0.78,

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.lubrication import asperity_law, lubricated_films
-from skinbayes.roughness import SelfAffineSpectrum
 
 
 def random_films(rng, nodes):
@@ -17,17 +17,9 @@ def random_films(rng, nodes):
     skin = LayeredSkin(
         young_modulus_layer=max(bulk, scale(1e6, 1e9)),
         young_modulus_bulk=bulk,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
         layer_thickness=scale(1e-5, 1e-4),
     )
-    surface = SelfAffineSpectrum(
-        rms_height=scale(1e-6, 5e-5),
-        hurst_exponent=rng.uniform(0.6, 0.95),
-        wavevector_min=1e3,
-        wavevector_rolloff=scale(1.1e3, 2e4),
-        wavevector_max=1e9,
-    )
+    surface = surface_from((scale(1e-6, 5e-5), rng.uniform(0.6, 0.95), 1e3, scale(1.1e3, 2e4), 1e9))
     modulus = float(reduced_modulus(bulk, 0.5))
     cylinder = cylinder_of_sphere(scale(0.02, 5.0), scale(1e-3, 2e-2), reduced_modulus=modulus)
     speeds = np.sort(np.exp(rng.uniform(np.log(1e-8), np.log(10.0), int(rng.integers(1, 31)))))
