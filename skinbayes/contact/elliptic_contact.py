@@ -205,6 +205,4 @@ def cylinder_of_ellipse(
     with np.errstate(all="ignore"):
         possible = np.asarray(radius_across) >= np.asarray(radius_along)
         radius = np.where(possible, contact.effective_radius, np.nan)
-    return cylinder_of_contact(
-        effective_contact_radius=contact.mean_pressure, mean_pressure=radius, reduced_modulus=reduced_modulus
-    )
+    return cylinder_of_contact(contact.mean_pressure, radius, reduced_modulus=reduced_modulus)

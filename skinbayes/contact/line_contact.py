@@ -143,9 +143,7 @@ def cylinder_of_contact(
 
     Examples
     --------
-    >>> cylinder = cylinder_of_contact(
-    ...     effective_contact_radius=5031.9, mean_pressure=3.5569e-3, reduced_modulus=20e3 / 0.75
-    ... )
+    >>> cylinder = cylinder_of_contact(5031.9, 3.5569e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     4.533e-03 m, 21.92 N/m
     """

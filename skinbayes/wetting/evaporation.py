@@ -100,9 +100,7 @@ def evaporation_rate(
 
     Examples
     --------
-    >>> print(
-    ...     f"{evaporation_rate(surface_temperature=0.5, air_temperature=308.15, air_temperature=293.15):.3e}"
-    ... )
+    >>> print(f"{evaporation_rate(0.5, 308.15, air_temperature=293.15):.3e}")
     1.747e-07
     """
     humidity = np.asarray(relative_humidity, dtype=np.float64)

@@ -85,11 +85,7 @@ def humidity_at_surface(
 
     Examples
     --------
-    >>> print(
-    ...     humidity_at_surface(
-    ...         relative_humidity=[0.5, 0.9], air_temperature=[305.15, 288.15], air_temperature=293.15
-    ...     ).round(4)
-    ... )
+    >>> print(humidity_at_surface([0.5, 0.9], [305.15, 288.15], air_temperature=293.15).round(4))
     [0.2457 1.    ]
     """
     humidity = np.asarray(relative_humidity, dtype=np.float64)

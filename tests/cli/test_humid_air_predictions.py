@@ -147,7 +147,10 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
         8.314462618 * kelvin * math.log(1 / humidity), rel=0.01
     )
     gaps = gap_distribution(load + pull, surface, skin=skin, area_correction=correction, closure=closure)
-    wet = gaps.cumulative(radius * sum(map(math.cos, angles))) - gaps.contact_fraction
+    wet = (
+        gaps.cumulative(radius * sum(map(math.cos, map(math.radians, (first, second)))))
+        - gaps.contact_fraction
+    )
     assert pull == pytest.approx(surface_tension_of_water(kelvin) / radius * wet, rel=1e-8)
     area = sum(body.area(load + pull, correction=correction, yield_stress=limit))
     assert found["relative_contact_area"][0] == pytest.approx(area, rel=2e-4)

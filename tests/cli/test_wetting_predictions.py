@@ -126,7 +126,12 @@ def test_other_skin_against_scalars_and_independent_code(predict, case, closure)
         mean_separation(pressure, surface, skin=skin, area_correction=correction), rel=1e-3
     )
     # Eqs. 5 to 7: the pull belongs to a Kelvin length up to which the gaps hold the water
-    kelvin = 0.072 * sum(map(math.cos, angles)) * found["wet_area"] / found["capillary_pressure"]
+    kelvin = (
+        0.072
+        * sum(map(math.cos, map(math.radians, (first, second))))
+        * found["wet_area"]
+        / found["capillary_pressure"]
+    )
     gaps = gap_distribution(pressure, surface, skin=skin, area_correction=correction, closure=closure)
     water = gaps.cumulative(kelvin) - found["relative_contact_area"]
     assert water == pytest.approx(found["wet_area"], rel=1e-3)

@@ -372,7 +372,15 @@ def random_vectors(count, seed):
     def scale(middle, width):
         return middle * np.exp(rng.normal(0.0, width, count))
 
-    surface = surface_from((scale(22e-6, 0.3), rng.uniform(0.65, 0.95, count), scale(1e3, 0.2), scale(6.3e3, 0.2), scale(1e9, 0.3)))  # fmt: skip
+    surface = surface_from(
+        (
+            scale(22e-6, 0.3),
+            rng.uniform(0.65, 0.95, count),
+            scale(1e3, 0.2),
+            scale(6.3e3, 0.2),
+            scale(1e9, 0.3),
+        )
+    )
     skin = LayeredSkin(
         young_modulus_layer=scale(7e6, 0.5),
         young_modulus_bulk=scale(20e3, 0.4),
@@ -441,7 +449,9 @@ def test_no_kinks_along_random_lines(seed):
 
     def gradient(half_width):
         place = np.linspace(-half_width, half_width, 41)
-        surface = surface_from((22.4e-6 * np.exp(direction[0] * place), 0.78 + 0.05 * direction[1] * place, 1e3, 6345.0, 1e9))  # fmt: skip
+        surface = surface_from(
+            (22.4e-6 * np.exp(direction[0] * place), 0.78 + 0.05 * direction[1] * place, 1e3, 6345.0, 1e9)
+        )
         skin = LayeredSkin(
             young_modulus_layer=7e6 * np.exp(direction[2] * place),
             young_modulus_bulk=20e3 * np.exp(direction[3] * place),

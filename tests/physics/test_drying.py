@@ -340,9 +340,7 @@ def test_batches_agree_with_rows_to_the_last_bit():
         nominal_pressure=LOAD,
     )
     for i in range(3):
-        skin = LayeredSkin(
-            young_modulus_layer=modulus[i], young_modulus_bulk=arguments[0][i], layer_thickness=20e-6
-        )
+        skin = LayeredSkin(young_modulus_layer=modulus[i], young_modulus_bulk=bulk[i], layer_thickness=20e-6)
         one = film_contact(
             LOAD,
             SURFACE,
@@ -355,8 +353,31 @@ def test_batches_agree_with_rows_to_the_last_bit():
         )
         for name in ("film", "area", "dry_area"):
             np.testing.assert_array_equal(getattr(batch, name)[i], getattr(one, name))
-        for whole, part in ((runs, drying_curve(times, START, initial_film=FILM, evaporation_rate=RATE, contact=one, frictional_shear_stress=SHEAR, nominal_pressure=LOAD)),
-                            (features, drying_features(START, FILM, evaporation_rate=RATE, contact=one, frictional_shear_stress=SHEAR, nominal_pressure=LOAD))):  # fmt: skip
+        for whole, part in (
+            (
+                runs,
+                drying_curve(
+                    times,
+                    START,
+                    initial_film=FILM,
+                    evaporation_rate=RATE,
+                    contact=one,
+                    frictional_shear_stress=SHEAR,
+                    nominal_pressure=LOAD,
+                ),
+            ),
+            (
+                features,
+                drying_features(
+                    START,
+                    FILM,
+                    evaporation_rate=RATE,
+                    contact=one,
+                    frictional_shear_stress=SHEAR,
+                    nominal_pressure=LOAD,
+                ),
+            ),
+        ):
             for left, right in zip(whole, part, strict=True):
                 np.testing.assert_array_equal(left[i] if np.ndim(left) else left, right)
 

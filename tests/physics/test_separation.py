@@ -298,14 +298,14 @@ def test_shapes_and_nan():
         young_modulus_layer=np.array([[7e6, 1e9]]), young_modulus_bulk=2e4, layer_thickness=2e-5
     )
     for function, at in ((mean_separation, 7e3), (pressure_at_separation, 1e-5)):
-        assert function(at, surface, skin).shape == (3, 2)
-        assert function([at, 2 * at], surface, skin).shape == (3, 2, 2)
-        assert function(np.full((3, 2, 4), at), surface, skin).shape == (3, 2, 4)
-        bad = np.isnan(function(at, surface, skin))
+        assert function(at, surface, skin=skin).shape == (3, 2)
+        assert function([at, 2 * at], surface, skin=skin).shape == (3, 2, 2)
+        assert function(np.full((3, 2, 4), at), surface, skin=skin).shape == (3, 2, 4)
+        bad = np.isnan(function(at, surface, skin=skin))
         assert bad[1].all() and not bad[[0, 2]].any()
-        assert np.isnan(function([-1.0, np.nan], surface, skin)).all()
-        assert np.isnan(function(0.0, surface, skin))[1].all()
-        assert np.isnan(function(at, surface, skin, 1.5)).all()
+        assert np.isnan(function([-1.0, np.nan], surface, skin=skin)).all()
+        assert np.isnan(function(0.0, surface, skin=skin))[1].all()
+        assert np.isnan(function(at, surface, skin=skin, area_correction=1.5)).all()
 
 
 def test_a_plateau_may_vanish():
