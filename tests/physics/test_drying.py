@@ -28,6 +28,10 @@ WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickn
 LOAD, SHEAR, TENSION, ANGLE = 6830.0, 15e6, 0.0727, np.radians(80.0)
 RATE = evaporation_rate_from_pressures(5.6e3, 1.15e3)
 START, FILM = 30.0, 90e-6
+DRYING = {"evaporation_rate": RATE, "frictional_shear_stress": SHEAR, "nominal_pressure": LOAD}
+RUN = {"initial_film": FILM, **DRYING}
+WATER = {"surface_tension": TENSION, "contact_angle_skin": ANGLE}
+HARD = {"young_modulus_layer_dry": 1e9, "yield_stress": 50e6}
 
 
 def contact_of(**options):
@@ -35,12 +39,10 @@ def contact_of(**options):
     return film_contact(
         LOAD,
         SURFACE,
+        **WATER,
+        **HARD,
         skin=options.pop("skin", WET),
-        surface_tension=TENSION,
-        contact_angle_skin=ANGLE,
         contact_angle_counterface=np.radians(glass),
-        young_modulus_layer_dry=1e9,
-        yield_stress=50e6,
         **options,
     )
 
@@ -49,29 +51,13 @@ CONTACT = contact_of()
 
 
 def curve(time, contact=CONTACT, spread=2e-7, start=START, film=FILM):
-    return drying_curve(
-        time,
-        start,
-        initial_film=film,
-        evaporation_rate=RATE,
-        contact=contact,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-        film_spread=spread,
-    )
+    return drying_curve(time, start, **DRYING, initial_film=film, contact=contact, film_spread=spread)
 
 
 @pytest.mark.parametrize(("closure", "time", "friction"), [("gaussian", 513.0, 2.31), ("delta", 490.0, 2.49)])
 def test_timeline_of_the_paper(closure, time, friction):
     contact = contact_of(closure=closure)
-    features = drying_features(
-        START,
-        FILM,
-        evaporation_rate=RATE,
-        contact=contact,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    )
+    features = drying_features(START, FILM, **DRYING, contact=contact)
     assert features.dry_friction == pytest.approx(0.300, abs=0.001)
     assert features.wet_plateau == pytest.approx(1.42, abs=0.005)
     assert features.peak_friction == pytest.approx(friction, rel=0.02)
@@ -96,15 +82,7 @@ def test_regimes_follow_the_physics_behind_them():
     plastic = elastoplastic_contact_area(LOAD, twice_stress_variance(SURFACE, dry), yield_stress=50e6).total
     assert CONTACT.dry_area == pytest.approx(plastic, rel=1e-12)
     films = np.array([0.15e-6, 1e-6, 3.3e-6, 8e-6, 12e-6])
-    state = capillary_state(
-        films,
-        LOAD,
-        spectrum=SURFACE,
-        skin=WET,
-        surface_tension=TENSION,
-        contact_angle_skin=ANGLE,
-        contact_angle_counterface=0.0,
-    )
+    state = capillary_state(films, LOAD, **WATER, spectrum=SURFACE, skin=WET, contact_angle_counterface=0.0)
     local = CONTACT.average(films, np.array(0.0))[0]
     np.testing.assert_allclose(local, state.relative_contact_area, rtol=1e-3)
     run = curve(np.linspace(0, 600, 1201))
@@ -165,15 +143,7 @@ def test_slope_is_the_derivative_and_the_curve_has_no_kinks():
 
 def test_features_agree_with_a_fine_curve():
     for spread in (1e-7, 5e-7, 2e-6):
-        features = drying_features(
-            START,
-            FILM,
-            evaporation_rate=RATE,
-            contact=CONTACT,
-            frictional_shear_stress=SHEAR,
-            nominal_pressure=LOAD,
-            film_spread=spread,
-        )
+        features = drying_features(START, FILM, **DRYING, contact=CONTACT, film_spread=spread)
         times = np.linspace(450, 560, 11_001)
         friction = curve(times, spread=spread).friction_coefficient
         best = np.argmax(friction)
@@ -190,14 +160,7 @@ def test_features_agree_with_a_fine_curve():
 
 
 def test_timing_moves_with_the_film_and_not_with_the_shear_stress():
-    features = drying_features(
-        START,
-        np.array([60e-6, 90e-6]),
-        evaporation_rate=RATE,
-        contact=CONTACT,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    )
+    features = drying_features(START, np.array([60e-6, 90e-6]), **DRYING, contact=CONTACT)
     assert np.diff(features.peak_time)[0] == pytest.approx(30e-6 / RATE, rel=1e-9)
     assert features.peak_width[0] == pytest.approx(features.peak_width[1], rel=1e-9)
     other = drying_features(
@@ -226,14 +189,7 @@ def test_features_change_smoothly():
     contact = contact_of(
         skin=LayeredSkin(young_modulus_layer=modulus, young_modulus_bulk=20e3, layer_thickness=20e-6)
     )
-    features = drying_features(
-        START,
-        FILM,
-        evaporation_rate=RATE,
-        contact=contact,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    )
+    features = drying_features(START, FILM, **DRYING, contact=contact)
     for value in (features.peak_time, features.peak_friction, features.peak_width, features.wet_plateau):
         steps = np.diff(value)
         assert np.max(np.abs(np.diff(steps))) < 0.03 * np.max(np.abs(steps))  # no step, no kink
@@ -257,14 +213,7 @@ def test_roots_of_features_are_found_whatever_the_function():
 
 def test_polypropylene_has_no_peak():
     contact = contact_of(glass=102.0)
-    features = drying_features(
-        START,
-        FILM,
-        evaporation_rate=RATE,
-        contact=contact,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    )
+    features = drying_features(START, FILM, **DRYING, contact=contact)
     assert np.isnan([features.peak_time, features.peak_friction, features.peak_width]).all()
     assert features.wet_plateau == pytest.approx(1.42, abs=0.005)
     run = curve(np.linspace(31, 600, 500), contact)
@@ -288,15 +237,7 @@ def test_hardening_layer():
     skin = LayeredSkin(
         young_modulus_layer=7e6**share * 1e9 ** (1 - share), young_modulus_bulk=20e3, layer_thickness=20e-6
     )
-    state = capillary_state(
-        film,
-        LOAD,
-        spectrum=SURFACE,
-        skin=skin,
-        surface_tension=TENSION,
-        contact_angle_skin=ANGLE,
-        contact_angle_counterface=0.0,
-    )
+    state = capillary_state(film, LOAD, **WATER, spectrum=SURFACE, skin=skin, contact_angle_counterface=0.0)
     area = elastoplastic_contact_area(
         state.total_pressure, twice_stress_variance(SURFACE, skin), yield_stress=50e6
     ).total
@@ -314,68 +255,27 @@ def test_batches_agree_with_rows_to_the_last_bit():
     batch = film_contact(
         LOAD,
         SURFACE,
+        **WATER,
+        **HARD,
         skin=LayeredSkin(young_modulus_layer=modulus, young_modulus_bulk=bulk, layer_thickness=20e-6),
-        surface_tension=TENSION,
-        contact_angle_skin=ANGLE,
         contact_angle_counterface=glass,
-        young_modulus_layer_dry=1e9,
-        yield_stress=50e6,
     )
     times = np.linspace(0, 600, 7)
-    runs = drying_curve(
-        times,
-        START,
-        initial_film=FILM,
-        evaporation_rate=RATE,
-        contact=batch,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    )
-    features = drying_features(
-        START,
-        FILM,
-        evaporation_rate=RATE,
-        contact=batch,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    )
+    runs = drying_curve(times, START, **RUN, contact=batch)
+    features = drying_features(START, FILM, **DRYING, contact=batch)
     for i in range(3):
         skin = LayeredSkin(young_modulus_layer=modulus[i], young_modulus_bulk=bulk[i], layer_thickness=20e-6)
-        one = film_contact(
-            LOAD,
-            SURFACE,
-            skin=skin,
-            surface_tension=TENSION,
-            contact_angle_skin=ANGLE,
-            contact_angle_counterface=glass[i],
-            young_modulus_layer_dry=1e9,
-            yield_stress=50e6,
-        )
+        one = film_contact(LOAD, SURFACE, **WATER, **HARD, skin=skin, contact_angle_counterface=glass[i])
         for name in ("film", "area", "dry_area"):
             np.testing.assert_array_equal(getattr(batch, name)[i], getattr(one, name))
         for whole, part in (
             (
                 runs,
-                drying_curve(
-                    times,
-                    START,
-                    initial_film=FILM,
-                    evaporation_rate=RATE,
-                    contact=one,
-                    frictional_shear_stress=SHEAR,
-                    nominal_pressure=LOAD,
-                ),
+                drying_curve(times, START, **RUN, contact=one),
             ),
             (
                 features,
-                drying_features(
-                    START,
-                    FILM,
-                    evaporation_rate=RATE,
-                    contact=one,
-                    frictional_shear_stress=SHEAR,
-                    nominal_pressure=LOAD,
-                ),
+                drying_features(START, FILM, **DRYING, contact=one),
             ),
         ):
             for left, right in zip(whole, part, strict=True):
@@ -395,24 +295,9 @@ def test_shapes_and_impossible_arguments():
         nominal_pressure=LOAD,
     )
     assert wide.relative_contact_area.shape == (2, 2, 3)
-    assert drying_features(
-        START,
-        np.array([50e-6, 90e-6]),
-        evaporation_rate=RATE,
-        contact=CONTACT,
-        frictional_shear_stress=SHEAR,
-        nominal_pressure=LOAD,
-    ).peak_time.shape == (2,)
+    assert drying_features(START, np.array([50e-6, 90e-6]), **DRYING, contact=CONTACT).peak_time.shape == (2,)
     assert np.isnan(
-        drying_curve(
-            100.0,
-            START,
-            initial_film=-1e-6,
-            evaporation_rate=RATE,
-            contact=CONTACT,
-            frictional_shear_stress=SHEAR,
-            nominal_pressure=LOAD,
-        ).friction_coefficient
+        drying_curve(100.0, START, **DRYING, initial_film=-1e-6, contact=CONTACT).friction_coefficient
     )
     assert np.isnan(
         drying_features(

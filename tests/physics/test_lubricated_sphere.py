@@ -48,10 +48,8 @@ SKIN = {
 }
 FLANK = (1.15, 1.32)  # speed at which asperities carry half of the load, skin under a stiffer layer
 
-GLASS_BALL, PAPER_SKIN = (
-    (8e-3, 0.2, 20e3 / 0.75),
-    LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
-)
+GLASS_BALL = (8e-3, 0.2, 20e3 / 0.75)
+PAPER_SKIN = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 FIGURE_11_BALL = (1e-2, 1.3, 1.6e6)
 
 
@@ -319,10 +317,8 @@ def test_skin_sphere_and_cylinder():
     ],
 )
 def test_flank_of_other_balls(bulk, layer, height, radius, force):
-    ball, skin = (
-        (radius, force, reduced_modulus(bulk, 0.5)),
-        LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=20e-6),
-    )
+    ball = (radius, force, reduced_modulus(bulk, 0.5))
+    skin = LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=20e-6)
     spectrum = surface_from((height, 0.78, 1e3, 6.345e3, 1e9))
     # smooth surfaces would be 0.4 λ^0.6 a²/R apart; from where asperities keep them as far apart on, they lose the load
     hertz = sphere_contact(ball[1], ball[0], reduced_modulus=ball[2])
