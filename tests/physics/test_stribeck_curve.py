@@ -319,5 +319,5 @@ def test_impossible_inputs_are_said(change):
 
 def test_impossible_speeds_are_said():
     found = curve([-1.0, 0.0, np.nan, 1e-3])
-    assert found.impossible.tolist() == [True, True, True, False]
-    assert np.isfinite(found.friction_coefficient).tolist() == [False, False, False, True]
+    assert found.impossible.tolist() == [True, False, True, False]
+    assert np.isfinite(found.friction_coefficient).tolist() == [False, True, False, True]
