@@ -14,13 +14,13 @@ def friction_coefficient(
 
     Parameters
     ----------
-    frictional_shear_stress : σ_f, Pa, any shape
-    relative_contact_area : A/A0, dimensionless, broadcasts
+    frictional_shear_stress : σ_f, Pa, ≥ 0, any shape
+    relative_contact_area : A/A0, dimensionless, ≥ 0, broadcasts
     nominal_pressure : p0, Pa, > 0, broadcasts
 
     Returns
     -------
-    friction_coefficient : μ, dimensionless, broadcast shape; nan or inf where p0 = 0
+    friction_coefficient : μ, dimensionless, broadcast shape; nan where an argument is impossible
 
     Notes
     -----
@@ -41,4 +41,5 @@ def friction_coefficient(
         for x in (frictional_shear_stress, relative_contact_area, nominal_pressure)
     )
     with np.errstate(all="ignore"):
-        return np.asarray(shear * area / pressure)[()]
+        possible = (shear >= 0) & (area >= 0) & (pressure > 0)
+        return np.where(possible, shear * area / pressure, np.nan)[()]

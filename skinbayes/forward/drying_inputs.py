@@ -83,6 +83,15 @@ def evaporation_rate_of(inputs: Inputs) -> FloatArray:
     return np.asarray(rate, dtype=float)
 
 
+def explain_evaporation(inputs: Inputs) -> list[str]:
+    """One sentence where water condenses."""
+    if not (evaporation_rate_of(inputs) < 0).any():
+        return []
+    return [
+        "water condenses on the skin instead of evaporating, and a film that grows is not described; nothing is predicted there"
+    ]
+
+
 def film_contact_of(
     inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None = None
 ) -> FilmContact:

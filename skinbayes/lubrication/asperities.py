@@ -13,6 +13,7 @@ from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation import mean_separation
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.errors import InputError
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _COUNT = 160
@@ -52,7 +53,8 @@ class AsperityLaw:
         cell = self.separation.searchsorted(separation, side="right") - 1
         cubic, square, slope, level = self.coefficients[:, np.maximum(cell, 0)]
         offset = separation - self.separation[np.maximum(cell, 0)]
-        above = np.maximum(offset, 0.0)
+        # no cubic acts beyond the last knot, where ū may be infinite
+        above = np.where(cell < self.separation.size - 1, np.maximum(offset, 0.0), 0.0)
         exponent = level + slope * offset + above * above * (square + cubic * above)
         rate = slope + above * (2 * square + 3 * cubic * above)
         pressure = np.exp(np.minimum(exponent, _STEEPEST))
@@ -71,8 +73,9 @@ class AsperityLaw:
         return float(-1 / self.coefficients[2, -1])
 
     def separation_at(self, pressure: float) -> float:
-        """ū, m, at which the asperities carry ``pressure`` (Pa); 0 if the table ends at a smaller pressure."""
-        wanted, levels = np.log(pressure), self.coefficients[3]
+        """ū, m, at which the asperities carry ``pressure`` (Pa, ≥ 0); 0 if the table ends at a smaller pressure."""
+        with np.errstate(all="ignore"):
+            wanted, levels = np.log(pressure), self.coefficients[3]
         if wanted <= levels[-1]:
             return float(self.separation[-1] + (wanted - levels[-1]) * -self.decay_length)
         return float(max(np.interp(-wanted, -levels, self.separation, left=0.0), 0.0))
@@ -94,6 +97,11 @@ def asperity_law(
     Returns
     -------
     law : `AsperityLaw`, p in Pa against ū in m
+
+    Raises
+    ------
+    InputError
+        if a parameter is impossible, or contact so complete that nothing tells separations apart
 
     Notes
     -----
@@ -152,6 +160,12 @@ def asperity_table(
     return AsperityTable(separation, log_pressure)
 
 
+def is_lawful(separation: FloatArray, log_pressure: FloatArray) -> bool:
+    """Tell whether an asperity law passes through points ū, m, and ln p, p in Pa, each of shape ``(M,)``."""
+    points = np.array([separation, -log_pressure])
+    return points.shape[-1] > 1 and bool(np.isfinite(points).all() and (np.diff(points) > 0).all())
+
+
 def law_of_table(separation: FloatArray, log_pressure: FloatArray) -> AsperityLaw:
     """Asperity law through given points, for surfaces of which the separation was measured or computed elsewhere.
 
@@ -164,6 +178,11 @@ def law_of_table(separation: FloatArray, log_pressure: FloatArray) -> AsperityLa
     -------
     law : `AsperityLaw`, p in Pa against ū in m
 
+    Raises
+    ------
+    InputError
+        if there are fewer than two points, or if they are not finite, or not in this order
+
     References
     ----------
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6.2).
@@ -175,6 +194,10 @@ def law_of_table(separation: FloatArray, log_pressure: FloatArray) -> AsperityLa
     >>> print(law_of_table(u, 10 - u / 1e-6)(np.array([3e-6, 7e-6]))[0].round(3))
     [1096.633   20.086]
     """
+    if not is_lawful(separation, log_pressure):
+        raise InputError(
+            "An asperity law needs at least two finite points, with separations that rise and pressures that fall."
+        )
     curve = PchipInterpolator(separation, log_pressure)
     last = (log_pressure[-1] - log_pressure[-2]) / (separation[-1] - separation[-2])
     tail = np.array([[0.0], [0.0], [last], [log_pressure[-1]]])

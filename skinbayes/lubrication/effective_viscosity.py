@@ -14,7 +14,7 @@ from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.errors import InputError
-from skinbayes.lubrication.asperities import asperity_law
+from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES, lubricated_films
 from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import FlowFactors
@@ -63,7 +63,7 @@ def stribeck_curve_of_liquid(
 
     Parameters
     ----------
-    sliding_speed : v, m/s, > 0, shape ``(K,)``
+    sliding_speed : v, m/s, ≥ 0, shape ``(K,)``; at 0 there is boundary friction
     flow_curve : η against shear rate; outside the measured rates the viscosity at the nearer end is used
     normal_force : F_N, N, > 0
     sphere_radius : R, m, > 0
@@ -84,7 +84,7 @@ def stribeck_curve_of_liquid(
     Raises
     ------
     InputError
-        if a speed is not a finite number > 0
+        if a speed is not a finite number ≥ 0
 
     Notes
     -----
@@ -107,18 +107,21 @@ def stribeck_curve_of_liquid(
     [0.108 0.325] [25.  24.6]
     """
     speed = np.atleast_1d(np.asarray(sliding_speed, dtype=np.float64))
-    wrong = np.flatnonzero(~(np.isfinite(speed) & (speed > 0)))
+    wrong = np.flatnonzero(~(np.isfinite(speed) & (speed >= 0)))
     if wrong.size:
         raise InputError(
-            f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number > 0 m/s."
+            f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number >= 0 m/s."
         )
-    liquids = liquid_rows([flow_curve] * speed.size)
+    liquids = liquid_rows([flow_curve]).at(np.zeros(speed.size, dtype=np.intp))
     modulus = float(reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk))
     cylinder = cylinder_of_sphere(normal_force, sphere_radius, reduced_modulus=modulus)
-    law = asperity_law(spectrum, skin, area_correction=area_correction)
+    table = asperity_table(spectrum, skin, area_correction=area_correction)
+    law = law_of_table(*table) if is_lawful(*table) else None
 
     def shear_rate(log_viscosity: FloatArray) -> FloatArray:
         """ln v/u."""
+        if law is None:
+            return np.full(speed.shape, np.nan)
         products = np.exp(log_viscosity) * speed * velocity_shift_factor
         films = lubricated_films(
             products,
@@ -129,7 +132,8 @@ def stribeck_curve_of_liquid(
             flow_factors=flow_factors,
             nodes=nodes,
         )
-        return np.asarray(np.log(speed / films.central_film))
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(speed / films.central_film))
 
     log_viscosity = _fixed_point(shear_rate, liquids)
     rate = np.exp(shear_rate(log_viscosity))

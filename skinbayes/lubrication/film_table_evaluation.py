@@ -31,6 +31,7 @@ _POINTS = 8192  # of vectors times rows worked on at a time: arrays stay in the 
 _COEFFICIENTS = (
     1 << 21
 )  # numbers, at most, that the axes are summed up to at a time: 32 vectors of 165 rows in one piece
+_STILL = -1e4  # ln of a speed of 0
 _FRICTION, _EVERYTHING = (
     (BOUNDARY, COUETTE, PRESSURE_FLOW),
     (CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE),
@@ -84,7 +85,7 @@ def tabulated_friction(
     Parameters
     ----------
     table : `FilmTable`
-    speed_viscosity_product : ηv, N/m, > 0, shape ``(N,)`` or ``(B, N)``, or a scalar
+    speed_viscosity_product : ηv, N/m, ≥ 0, shape ``(N,)`` or ``(B, N)``, or a scalar; at 0 there is boundary friction
     parameters : `FILM_PARAMETERS` by name, SI (Pa, m, N), each a scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the theory is evaluated at a ηv
@@ -126,7 +127,7 @@ def tabulated_friction(
         return _friction(
             films,
             logs[0] + logs[2],
-            np.log(product * shift),
+            _logarithm(product) + np.where(shift > 0, np.log(shift), np.nan),
             stress,
             everything,
             thickest_film,
@@ -158,7 +159,7 @@ def tabulated_friction_of_liquids(
     Parameters
     ----------
     table : `FilmTable`
-    sliding_speed : v, m/s, > 0, shape ``(N,)`` or ``(B, N)``
+    sliding_speed : v, m/s, ≥ 0, shape ``(N,)`` or ``(B, N)``; at 0 there is boundary friction
     liquids : the liquid of each of N rows, from `liquid_rows`
     parameters : `FILM_PARAMETERS` by name, SI (Pa, m, N), each a scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
@@ -207,8 +208,8 @@ def tabulated_friction_of_liquids(
     def part(vectors: slice) -> tuple[FloatArray | NDArray[np.bool_], ...]:
         logs, (speed, stress, shift) = arguments.part(vectors)
         films = contract(table, logs, 6 if everything else 4)
-        log_speed = np.log(speed)
-        log_shift = np.log(shift)
+        log_speed = _logarithm(speed)
+        log_shift = np.where(shift > 0, np.log(shift), np.nan)
         log_viscosity, log_rate = viscosity_of_films(films, log_speed, log_shift, liquids)
         log_product = log_viscosity + log_speed + log_shift
         friction = _friction(
@@ -250,9 +251,11 @@ class _Arguments:
     ) -> list[Any]:
         vectors, rows = self.shape
         by_row = any(x.shape[1] > 1 for x in self.logs)
-        step = max(1, min(_POINTS // rows, _COEFFICIENTS // (columns * (rows if by_row else 1))))
+        step = max(
+            1, min(_POINTS // max(rows, 1), _COEFFICIENTS // (columns * (max(rows, 1) if by_row else 1)))
+        )
         with np.errstate(all="ignore"):
-            parts = [function(slice(first, first + step)) for first in range(0, vectors, step)]
+            parts = [function(slice(first, first + step)) for first in range(0, max(vectors, 1), step)]
         whole = parts[0] if len(parts) == 1 else [np.concatenate(x) for x in zip(*parts, strict=True)]
         return [np.broadcast_to(x, self.shape).reshape(self.given)[()] for x in whole]
 
@@ -265,6 +268,11 @@ def _arguments(parameters: Mapping[str, ArrayLike], *others: ArrayLike) -> _Argu
         )
     named = [np.asarray(parameters[name], dtype=np.float64) for name in FILM_PARAMETERS]
     return _Arguments(named, [np.asarray(x, dtype=np.float64) for x in others])
+
+
+def _logarithm(values: FloatArray) -> FloatArray:
+    """ln of speeds; that of 0 is so far below any other that exp of it is 0, but leaves arithmetic sound."""
+    return np.maximum(np.log(values), _STILL)
 
 
 def _friction(
@@ -281,7 +289,7 @@ def _friction(
     log_number = log_product + scales.number_per_product
     strained = scales.strain > np.log(largest_strain)
     beyond = log_number + 2 * scales.strain > np.log(thickest_film)
-    held = films.inside & (log_number <= films.smooth.highest)
+    held = films.inside & ~(log_number > films.smooth.highest)
     good = held & ~strained & ~beyond & np.isfinite(log_number) & (shear_stress >= 0)
     log_number = np.where(good, log_number, films.anchor)
     wanted = _EVERYTHING if everything else _FRICTION
@@ -296,11 +304,11 @@ def _friction(
         boundary,
         couette,
         pressure,
-        np.exp(logs[SHARE]) + missing if everything else nothing,
+        np.minimum(np.exp(logs[SHARE]), 1.0) + missing if everything else nothing,
         np.exp(logs[MINIMUM] + scales.height) + missing if everything else nothing,
         np.exp(logs[CENTRAL] + scales.height) + missing if everything else nothing,
         np.broadcast_to(np.exp(scales.strain), good.shape),
-        ~held & ~np.isnan(log_number),
+        ~held,
         np.broadcast_to(strained, good.shape),
         beyond,
     )

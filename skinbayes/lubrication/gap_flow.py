@@ -14,11 +14,13 @@ from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.gaps import gap_distribution
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.errors import InputError
 from skinbayes.lubrication.flow_factors import FrictionFactors
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _GAPS = 300
+_ROUNDING = 1e-9  # by which shares may exceed the whole
 # over √V; ū falls by decades in the first part and rises in even steps in the second
 _PRESSURES = np.concatenate([np.geomspace(0.3, 1e-9, 28), np.geomspace(1e-10, 1e-60, 24)])
 
@@ -51,11 +53,12 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
     Parameters
     ----------
     gap : u where the surfaces do not touch, m, > 0, shape ``(K,)``
-    probability : share of the nominal area with that gap, dimensionless, shape ``(K,)``; what is missing to 1 is contact
+    probability : share of the nominal area with that gap, dimensionless, ≥ 0, shape ``(K,)``; what is missing to 1 is contact
 
     Returns
     -------
-    factors : `GapFactors`; φ_p = 0 and φ_fp = 0 where contact covers half of the area or more, Φ_s = ū then
+    factors : `GapFactors`; φ_p = 0 and φ_fp = 0 where contact covers half of the area or more, Φ_s = ū then; nan if an
+        argument is impossible
 
     Notes
     -----
@@ -75,6 +78,9 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
     0.8381 2.388e-07 1.279 0.8408
     """
     u, share = np.asarray(gap, dtype=np.float64), np.asarray(probability, dtype=np.float64)
+    if not (np.isfinite(u) & (u > 0) & (share >= 0)).all() or share.sum() > 1 + _ROUNDING:
+        return GapFactors(np.nan, np.nan, np.nan, np.nan)
+    u, share = u[share > 0], share[share > 0]
     mean = float(share @ u)
     relative = u / mean
     cube, contact = relative**3, 1 - float(share.sum())
@@ -131,7 +137,7 @@ class TabulatedFlowFactors:
             value[..., 0],
             slope[..., 0] / place,
             shear * separation,
-            shear + shear_slope * separation / place,
+            shear + shear_slope,  # no slope beyond the ends, ū is the place elsewhere
         )
 
     def friction(self, separation: FloatArray) -> FrictionFactors:
@@ -156,11 +162,16 @@ def tabulated_flow_factors(
     spectrum : power spectrum, C in m^4, one surface
     skin : moduli in Pa, thickness in m, one skin
     area_correction : γ, dimensionless, 0 < γ ≤ 1
-    smallest_gap : gaps below count as contact, m; None for a hundredth of the rms height, as Patir and Cheng have it
+    smallest_gap : gaps below count as contact, m, > 0; None for a hundredth of the rms height, as Patir and Cheng have it
 
     Returns
     -------
     factors : `TabulatedFlowFactors` over ū in m, from ten times the smallest gap to where the surfaces are as good as smooth
+
+    Raises
+    ------
+    InputError
+        if a parameter is impossible, or hardly a gap is wider than ten times the smallest
 
     References
     ----------
@@ -179,9 +190,13 @@ def tabulated_flow_factors(
     gaps = gap_distribution(_PRESSURES * scale, spectrum, skin=skin, area_correction=area_correction)
     mean = np.asarray(gaps.mean)
     widest = float((gaps.location + 6 * gaps.width).max())
+    kept = np.flatnonzero((mean > 10 * least) & np.isfinite(mean))
+    if not least > 0 or kept.size < 2:
+        raise InputError(
+            f"Flow factors need skin and roughness that are possible, and gaps wider than ten times the smallest, {least:g} m."
+        )
     edges = np.geomspace(least, widest, _GAPS)
     share, volume = (np.diff(part, axis=-1) for part in (gaps.cumulative(edges), gaps.film(edges)))
-    kept = np.flatnonzero((mean > 10 * least) & np.isfinite(mean))
     factors = [_of_cells(share[place], volume[place]) for place in kept]
     return TabulatedFlowFactors(mean[kept], tuple(factors))
 

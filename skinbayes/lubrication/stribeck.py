@@ -14,7 +14,7 @@ from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
 from skinbayes.contact.variance import twice_stress_variance
-from skinbayes.lubrication.asperities import AsperityTable, asperity_table, law_of_table
+from skinbayes.lubrication.asperities import AsperityTable, asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.rheology import Rheology
@@ -128,7 +128,7 @@ def stribeck_curve(
 
     Parameters
     ----------
-    speed_viscosity_product : ηv, N/m, > 0, shape ``(K,)``, or a scalar; with a rheology η0 v
+    speed_viscosity_product : ηv, N/m, ≥ 0, shape ``(K,)``, or a scalar; with a rheology η0 v. At 0 there is boundary friction.
     normal_force : F_N, N, > 0, batch shape
     sphere_radius : R, m, > 0, batch shape
     spectrum : power spectrum, C in m^4, batch shape
@@ -197,13 +197,16 @@ def stribeck_curve(
         for row, *points in zip(cases.tolist(), knots, levels, strict=True)
     ]
 
-    def gather(name: str) -> Any:
-        stacked = np.array([row[name] for row in rows])
+    def gather(name: str, kind: str) -> Any:
+        # an empty batch has no row that tells its kind
+        stacked = np.array([row[name] for row in rows], dtype=bool if "bool" in kind else np.float64)
         if name == "strain":
             return stacked.reshape(batch)[()]
         return stacked.reshape((*batch, *given.shape))[()]
 
-    return StribeckCurve(**{entry.name: gather(entry.name) for entry in fields(StribeckCurve)})
+    return StribeckCurve(
+        **{entry.name: gather(entry.name, str(entry.type)) for entry in fields(StribeckCurve)}
+    )
 
 
 class _Case(NamedTuple):
@@ -235,8 +238,8 @@ def _one_curve(
     shifted = products * case.shift
     with np.errstate(invalid="ignore"):
         physical = np.isfinite(strain) & (load > 0) & (case.shear_stress >= 0)
-        physical = physical & np.isfinite(table.log_pressure).all() & (np.diff(table.separation) > 0).all()
-        possible = (shifted > 0) & (shifted < np.inf) & physical
+        physical = physical & (case.shift > 0) & is_lawful(*table)
+        possible = (shifted >= 0) & (shifted < np.inf) & physical
         beyond = possible & (3 * np.pi * shifted > thickest_film * load)
     wide = np.full(products.shape, bool(strain > largest_strain))
     solved = possible & ~beyond & ~wide
