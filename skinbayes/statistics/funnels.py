@@ -6,9 +6,9 @@ through the neck at small s. With the deviations of the logarithms from their me
 measured in √(s² + w²), neck and mouth are equally wide: a non-centred parametrisation about the data instead of the prior. The
 density stays what it is: the Jacobian is exact, whatever the centre.
 
-Effects that are added to the data, not to their logarithms, exchange an amount with the levels, not a factor. Then it is the
-data that a level predicts whose sums with the effects are known: straight in these, bent in the logarithms, with a plateau where a
-level predicts less than the data resolve. :class:`Added` makes them coordinates.
+Effects that are added to the data, not to their logarithms, exchange an amount with the levels, not a factor. Then the
+data that a level predicts are known but for the effects: a ridge that is straight in these, bent in logarithms, with a plateau
+where a level predicts less than the data resolve. :class:`Added` makes them coordinates.
 """
 
 from __future__ import annotations
