@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from small_crossed import Crossed, by_regression
 
 from skinbayes.fit import sample
+from skinbayes.report.sentences import open_ends
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
 
@@ -176,6 +179,32 @@ def test_levels_that_effects_are_added_to_are_what_they_predict(groups, tmp_path
     coordinates = target.transform.forward(moved)[:, levels] - width * np.log(predicted)
     if len(groups) == 1:
         np.testing.assert_allclose(coordinates, predicted, rtol=1e-3)
+
+
+def test_a_level_that_effects_stand_for_is_named(tmp_path) -> None:
+    problem = Crossed(2, 3, family="gaussian").problem(tmp_path, seed=1)
+    rng = np.random.default_rng(1)
+    exact = by_regression(problem, rng, 20_000)
+    drawn = exact.draws[rng.choice(len(exact.draws), size=4000, p=exact.weights)]
+    prior = problem.draw_prior(rng, 4000)
+
+    def said(posterior):
+        fit = SimpleNamespace(
+            problem=problem,
+            names=problem.names,
+            theta=lambda which="posterior": prior if which == "prior" else posterior,
+            draws=lambda label: posterior[:, problem.names.index(label)],
+            symbol=lambda label: label,
+            unit=lambda label: "Pa",
+        )
+        return open_ends(fit)
+
+    # at the dorsal forearm friction is least: effects of both people together can be all of it
+    (sentence,) = said(drawn)
+    assert "dorsal forearm" in sentence and "effects of person" in sentence
+    assert "tighter prior on the scale of the groups of person" in sentence
+    bounded = drawn[drawn[:, problem.names.index("frictional_shear_stress[dorsal forearm]")] > 2e6]
+    assert said(bounded) == []
 
 
 def test_straightened_funnels_keep_the_density(tmp_path) -> None:
