@@ -28,6 +28,7 @@ from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.ranges import input_ranges
+from skinbayes.problem.summary import summary
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 from skinbayes.statistics.groups import CrossedGroups
 
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Problem:
     """A statistical model bound to its data; frozen.
 
@@ -76,6 +77,9 @@ class Problem:
     settings: Mapping[str, str] = field(default_factory=dict)
     surface_file: Path | None = None
 
+    def __repr__(self) -> str:
+        return summary(self)
+
     @property
     def name(self) -> str:
         """Name of the model."""
@@ -106,10 +110,7 @@ class Problem:
 
     @property
     def observables(self) -> tuple[str, ...]:
-        """The observables that the data hold.
-
-        Raises :class:`InputError` if the model has no data.
-        """
+        """The observables that the data hold; :class:`InputError` if the model has no data."""
         if not self.observations:
             hint = "give them with --data FILE.csv" if self.spec.observables else "it serves 'predict' only"
             raise InputError(f"{self.spec.path}: the model '{self.name}' has no data; {hint}")
@@ -369,10 +370,7 @@ class Problem:
         tables: Tables | None = None,
         alike: DistinctRows | None = None,
     ) -> dict[str, FloatArray]:
-        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them.
-
-        Rows that are ``alike`` are evaluated once.
-        """
+        """The forward model with discrepancy factors and covariates on observables; rows that are ``alike`` once."""
         tables = self.tables if tables is None else tables
         with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
             if alike is None:

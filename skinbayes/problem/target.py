@@ -11,6 +11,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.problem.failures import impossible
 from skinbayes.problem.funnels import straightened
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
@@ -103,13 +104,22 @@ class PosteriorTarget:
         theta = self.problem.draw_prior(rng, CANDIDATES_PER_START * count)
         position = self.transform.forward(theta)
         # the likelihood is what costs: it is evaluated once for each candidate
-        weight = self.problem.log_likelihood(theta) if self.use_likelihood else np.zeros(len(theta))
+        found = self.problem.data_likelihood()(theta) if self.use_likelihood else np.zeros(len(theta))
+        weight = impossible(found)
         prior = replace(self, use_likelihood=False).log_density(position)
         usable = np.isfinite(prior + weight) & np.isfinite(position).all(axis=-1)
         if usable.sum() < count:
+            path, without = self.problem.spec.path, int(np.isnan(found).sum())
+            remedy = (
+                f"the forward model gives no prediction at {without} of them. What to do: narrow the priors to values at "
+                f"which it does; 'skinbayes check {path}' names some at which it does not"
+                if 2 * without > len(usable) - usable.sum()
+                else "nearly all of them make the data impossible. What to do: widen the noise or the priors until they reach "
+                f"the data; 'skinbayes prior {path}' shows how far they are"
+            )
             raise InputError(
-                f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density; "
-                "the priors mostly cover values at which the forward model gives no prediction (see 'skinbayes check')"
+                f"{path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density, where {count} are "
+                f"needed to start from; {remedy}"
             )
         position, weight = position[usable], weight[usable]
         beta = largest_power(weight, count)
