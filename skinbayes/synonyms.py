@@ -11,6 +11,8 @@ _SYNONYMS = {
     "friction_coefficient": "mu cof friction friction_coeff friction_factor coefficient_of_friction coeff_of_friction "
     "friction_coefficient_mu dynamic_friction kinetic_friction mean_friction cof_mean mu_mean static_friction",
     "normal_force": "load force normal_load applied_load applied_force contact_force fn f_n f_normal force_normal weight",
+    "friction_force": "tangential_force lateral_force shear_force frictional_force force_tangential f_f f_t ft",
+    "number_of_measurements": "number_of_readings number_of_repeats number_of_replicates n_measurements sample_size",
     "sphere_radius": "radius ball_radius probe_radius tip_radius indenter_radius sphere_r radius_of_curvature",
     "sliding_speed": "velocity speed sliding_velocity sliding_rate stroke_speed v_slide",
     "viscosity": "eta visc dynamic_viscosity shear_viscosity",
@@ -59,10 +61,6 @@ _OTHERWISE = {
         "half of the diameter: halve the values",
         "diameter sphere_diameter ball_diameter probe_diameter tip_diameter indenter_diameter",
     ),
-    "friction_coefficient": (
-        "the friction force over the normal force: divide",
-        "friction_force tangential_force lateral_force shear_force f_t ft frictional_force",
-    ),
     "viscosity": ("the kinematic viscosity times the density", "kinematic_viscosity"),
     "hurst_exponent": ("3 minus the fractal dimension", "fractal_dimension"),
     "rms_height": ("the root-mean-square height, which is larger than the mean height Ra", "ra sa mean_roughness roughness_ra"),
@@ -97,7 +95,7 @@ def plain_name(name: str) -> str:
 
 
 def likely_meant(
-    name: str, known: Collection[str], symbols: dict[str, str], spread: str
+    name: str, known: Collection[str], symbols: dict[str, str], spreads: tuple[str, str], near: bool = True
 ) -> list[tuple[str, str]]:
     """Which of the known names is meant by one that is not among them, the likeliest first, each with a remark or ``""``.
 
@@ -106,21 +104,22 @@ def likely_meant(
     name : as it was written
     known : names that would be understood
     symbols : symbols in equations to names
-    spread : ending of names of spreads
+    spreads : endings of names of standard deviations and of standard errors
+    near : whether names that are only written alike count
 
     Examples
     --------
-    >>> likely_meant("COF", ["friction_coefficient"], {}, "_standard_deviation")
+    >>> likely_meant("COF", ["friction_coefficient"], {}, ("_sd", "_se"))
     [('friction_coefficient', '')]
-    >>> likely_meant("ball diameter", ["sphere_radius"], {}, "_standard_deviation")
+    >>> likely_meant("ball diameter", ["sphere_radius"], {}, ("_sd", "_se"))
     [('sphere_radius', 'half of the diameter: halve the values')]
     """
     plain = plain_name(name[:80])
     alike = {plain_name(one): one for one in known}
     found = _called(name.strip(), plain, alike, known, symbols)
     if not found:
-        found = _spread_of(plain, alike, known, symbols, spread)
-    if not found and len(plain) > 2:
+        found = _spread_of(plain, alike, known, symbols, spreads)
+    if not found and near and len(plain) > 2:
         close = get_close_matches(plain, list(alike), n=2, cutoff=_CUTOFF)
         words = set(plain.split("_"))
         parts = [one for one in alike if len(plain) > 3 and words <= set(one.split("_"))]
@@ -149,16 +148,19 @@ def _called(
 
 
 def _spread_of(
-    plain: str, alike: dict[str, str], known: Collection[str], symbols: dict[str, str], spread: str
+    plain: str,
+    alike: dict[str, str],
+    known: Collection[str],
+    symbols: dict[str, str],
+    spreads: tuple[str, str],
 ) -> list[tuple[str, str]]:
     """Names of spreads, where the name is that of a known quantity with one of the usual words for a spread."""
     split = _SPREAD.fullmatch(plain)
     if split is None or not (split["before"] or split["after"]):
         return []
-    base = split["base"]
-    remark = "for a mean of several readings this is its standard error" if split["after"] in _ERRORS else ""
+    base, spread = split["base"], spreads[split["after"] in _ERRORS]
     return [
-        (one + spread, remark)
+        (one + spread, "")
         for one, why in _called(base, base, alike, known, symbols)
-        if not why and not one.endswith(spread)
+        if not why and not one.endswith(spreads)
     ]

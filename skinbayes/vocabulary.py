@@ -112,6 +112,10 @@ _ALL = (
     # friction experiment
     _closed("friction_coefficient", "μ", "1", "friction force over normal force"),
     Quantity("normal_force", "F_N", "N", "normal load"),
+    _closed("friction_force", "F_f", "N", "force against sliding, or against its beginning"),
+    Quantity(
+        "number_of_measurements", "n", "1", "measurements whose mean a row holds", lower=1, lower_open=False
+    ),
     _closed("sliding_speed", "v", "m/s", "sliding speed"),
     Quantity("sphere_radius", "R", "m", "radius of the sphere"),
     Quantity("viscosity", "η", "Pa s", "dynamic viscosity"),
@@ -299,23 +303,39 @@ LABELS: dict[str, str] = {
     "source": "key of the source the row was read in",
     "row_label": "a name for the row",
 }
-"""Text columns of data sets (grouping columns) and their meaning."""
+"""Usual names of label columns and their meaning; any other name without a unit is a label too."""
 
 _SYMBOLS = {normalize("NFKC", quantity.symbol): quantity.name for quantity in reversed(_ALL)}
 
 STANDARD_DEVIATION_SUFFIX = "_standard_deviation"
 """A column ``<quantity>_standard_deviation`` holds the spread of that quantity, in its unit."""
 
+STANDARD_ERROR_SUFFIX = "_standard_error"
+"""A column ``<quantity>_standard_error`` holds that of a mean of several measurements, in its unit."""
+
+_SPREADS = {STANDARD_DEVIATION_SUFFIX: "sd", STANDARD_ERROR_SUFFIX: "se"}
+
+
+def spread_of(name: str) -> str | None:
+    """The name whose spread a column of this name holds, None if it holds none.
+
+    Examples
+    --------
+    >>> spread_of("normal_force_standard_error"), spread_of("normal_force")
+    ('normal_force', None)
+    """
+    return next((name.removesuffix(suffix) for suffix in _SPREADS if name.endswith(suffix)), None)
+
 
 def lookup(name: str) -> Quantity | None:
     """The quantity called ``name``; spread columns are recognised by their suffix; None if unknown."""
     if name in QUANTITIES:
         return QUANTITIES[name]
-    if name.endswith(STANDARD_DEVIATION_SUFFIX):
-        base = QUANTITIES.get(name.removesuffix(STANDARD_DEVIATION_SUFFIX))
-        if base is not None:
-            return Quantity(name, f"sd({base.symbol})", base.unit, f"spread of {base.name}")
-    return None
+    base = QUANTITIES.get(spread_of(name) or "")
+    if base is None:
+        return None
+    word = _SPREADS[name.removeprefix(base.name)]
+    return Quantity(name, f"{word}({base.symbol})", base.unit, f"spread of {base.name}")
 
 
 _LONGEST_NAME = 100
@@ -334,10 +354,10 @@ def suggestions(name: str, known: Collection[str]) -> str:
     return f" Did you mean {' or '.join(said)}?" if said else ""
 
 
-def meant(name: str, known: Collection[str]) -> list[tuple[str, str]]:
+def meant(name: str, known: Collection[str], near: bool = True) -> list[tuple[str, str]]:
     """Which of the known names are likely meant by ``name``, each with a remark on how they differ (or ``""``).
 
-    Synonyms, symbols and words for spreads (``mu``, ``COF``, ``σ_f``, ``load_sd``) count as well as slips of the pen.
+    Synonyms, symbols and words for spreads (``mu``, ``COF``, ``σ_f``, ``load_sd``) count, and if ``near`` slips of the pen.
 
     Examples
     --------
@@ -346,4 +366,4 @@ def meant(name: str, known: Collection[str]) -> list[tuple[str, str]]:
     """
     if len(name) > _LONGEST_NAME:  # the comparison takes time with the square of the length
         return []
-    return likely_meant(name, known, _SYMBOLS, STANDARD_DEVIATION_SUFFIX)
+    return likely_meant(name, known, _SYMBOLS, (STANDARD_DEVIATION_SUFFIX, STANDARD_ERROR_SUFFIX), near)

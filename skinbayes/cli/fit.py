@@ -73,6 +73,7 @@ def fit(
     from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
     from skinbayes.problem import load_problem
+    from skinbayes.problem.rows import data_notes
 
     problem = load_problem(model, data=data)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
@@ -88,6 +89,8 @@ def fit(
             err=True,
         )
         return EXIT_INTERRUPTED
+    for note in data_notes(problem):
+        say(note, err=True)
     page = None
     if with_report:
         from skinbayes.cli.page import write_page

@@ -128,6 +128,7 @@ def print_table(
     """
     from rich.text import Text
 
+    headers = [_cell(header) for header in headers]
     cells = [[_cell(cell) for cell in row] for row in rows]
     terminal = console()
     for gap in (3, 2):

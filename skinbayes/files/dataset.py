@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import io
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from itertools import compress
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from unicodedata import normalize
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes import vocabulary
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.columns import LabelArray, read_columns
+from skinbayes.files.columns import DROP, LEAVE_OUT, LabelArray, Missing, read_columns
+from skinbayes.files.given_columns import table_of_columns
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
 from skinbayes.files.table import Problems, quoted, read_table
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 DATA_FILE = "data.csv"
 PROVENANCE_FILE = "provenance.toml"
@@ -31,14 +39,17 @@ class Dataset:
     Attributes
     ----------
     key : name of the data set (of the file, for a CSV of a user's own)
-    path : the CSV
+    path : the CSV; the name, for columns that were given as such
     columns : name to array of shape (n_rows,), read-only; numbers in SI, or text for label columns
-    units : SI unit of each numeric column
+    units : SI unit of each numeric column; as written where the vocabulary does not know the quantity
     n_rows : number of rows
     provenance : where the numbers come from, or None for a bare CSV
     sha256 : of the bytes of the CSV
     kind : ``"measurements"``
     selection : the labels that were selected, by column; empty for all rows
+    lines : line (of a file) or row (of columns that were given) of each row; empty if not known
+    dropped : those of the rows that were left out because a value is missing
+    in_memory : whether there is no file
     """
 
     key: str
@@ -49,6 +60,9 @@ class Dataset:
     sha256: str
     kind: Literal["measurements"] = "measurements"
     selection: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    lines: tuple[int, ...] = ()
+    dropped: tuple[int, ...] = ()
+    in_memory: bool = False
 
     def __post_init__(self) -> None:
         frozen: dict[str, FloatArray | LabelArray] = {}
@@ -62,8 +76,57 @@ class Dataset:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # a mapping proxy cannot be pickled, and arrays forget that they are read-only
-        fields = (self.key, self.path, dict(self.columns), dict(self.units), self.provenance, self.sha256)
-        return Dataset, (*fields, self.kind, dict(self.selection))
+        values = (getattr(self, one.name) for one in fields(self))
+        return Dataset, tuple(dict(v) if isinstance(v, MappingProxyType) else v for v in values)
+
+    @classmethod
+    def from_columns(
+        cls, columns: Mapping[str, Any] | DataFrame, name: str = "data", *, missing: Missing = "refuse"
+    ) -> Dataset:
+        """Make a data set of a pandas data frame or a mapping of arrays, with the checks of a CSV.
+
+        Parameters
+        ----------
+        columns : header to values of shape (n_rows,). A header is as in a CSV, ``"normal_force [mN]"``; under the bare name of a
+            quantity stand numbers in SI or a ``pint`` quantity; all else is a label column
+        name : stands in messages in place of a file
+        missing : whether rows without a value are refused, or kept (NaN, empty labels)
+
+        Raises
+        ------
+        InputError
+            as :func:`load_dataset` does, with the row in place of the line (the first is 1)
+
+        Examples
+        --------
+        >>> data = Dataset.from_columns({"person": ["A", "B"], "normal_force [mN]": [500, 480]})
+        >>> data.columns["normal_force"].tolist(), data.labels("person")
+        ([0.5, 0.48], ('A', 'B'))
+        """
+        table = table_of_columns(columns, name)
+        found, units = read_columns(table, missing=missing)
+        made = cls(name, Path(name), found, units, None, "", lines=table.lines, in_memory=True)
+        return replace(made, sha256=hashlib.sha256(made.to_csv().encode()).hexdigest())
+
+    def to_csv(self) -> str:
+        """The columns as a CSV in SI; read again, it has the same :attr:`fingerprint`."""
+        text = io.StringIO()
+        # quotes about headers, so that a semicolon in a name is not taken for what separates cells
+        odd = any(mark in name for name in self.columns for mark in ";\t")
+        writer = csv.writer(text, lineterminator="\n")
+        heading = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_ALL if odd else csv.QUOTE_MINIMAL)
+        heading.writerow(
+            [f"{name} [{self.units[name]}]" if name in self.units else name for name in self.columns]
+        )
+        cells = [
+            [
+                "" if value != value else repr(value) if name in self.units else value
+                for value in values.tolist()
+            ]
+            for name, values in self.columns.items()
+        ]
+        writer.writerows(zip(*cells, strict=True))
+        return text.getvalue()
 
     @property
     def shown(self) -> str:
@@ -130,12 +193,47 @@ class Dataset:
             keep &= np.isin(self._label_column(column), chosen)
         if not keep.any():
             raise InputError(f"data set '{self.key}': no row has {_wish(rows)}; expected at least one row")
-        columns = {name: values[keep] for name, values in self.columns.items()}
         chosen_labels = {column: tuple(_labels(labels)) for column, labels in rows.items()}
-        selection = {**self.selection, **chosen_labels}
-        return Dataset(
-            self.key, self.path, columns, self.units, self.provenance, self.sha256, self.kind, selection
-        )
+        return replace(self._rows(keep), selection={**self.selection, **chosen_labels})
+
+    def complete(self, used: Collection[str], drop: bool) -> Dataset:
+        """The rows that have a value in each of the columns ``used``.
+
+        Parameters
+        ----------
+        used : names; those that are no columns are passed over
+        drop : whether rows without a value are left out, or refused
+
+        Raises
+        ------
+        InputError
+            a value is missing and its row may not be dropped, or no row remains
+        """
+        empty = {
+            name: np.isnan(values) if values.dtype.kind == "f" else values == ""
+            for name, values in self.columns.items()
+            if name in used
+        }
+        keep = ~np.any([*empty.values(), np.zeros(self.n_rows, dtype=bool)], axis=0)
+        if keep.all():
+            return self
+        lines = self.lines or tuple(range(1, self.n_rows + 1))
+        problems = Problems(self.path, "row" if self.in_memory or not self.lines else "line")
+        for position, (name, missing) in enumerate(empty.items()):
+            for row in np.flatnonzero(missing).tolist():
+                problems.add(
+                    lines[row], position, f", column '{name}': found no value. {LEAVE_OUT}, {DROP}", "missing"
+                )
+        if not drop:
+            problems.raise_if_any()
+        if not keep.any():
+            raise InputError(f"{self.path}: no row has a value in each of the columns {', '.join(empty)}")
+        dropped = tuple(line for line, kept in zip(lines, keep, strict=True) if not kept)
+        return replace(self._rows(keep), dropped=tuple(sorted({*self.dropped, *dropped})))
+
+    def _rows(self, keep: NDArray[np.bool_]) -> Dataset:
+        columns = {name: values[keep] for name, values in self.columns.items()}
+        return replace(self, columns=columns, lines=tuple(compress(self.lines, keep)))
 
     def _label_column(self, column: str) -> LabelArray:
         available = [name for name in self.columns if name not in self.units]
@@ -170,14 +268,48 @@ def _wish(rows: Mapping[str, Sequence[str]]) -> str:
     return " and ".join(f"{column} in {list(labels)!r:.80}" for column, labels in rows.items()) or "any label"
 
 
-def load_dataset(name_or_path: str | Path, *, relative_to: Path | None = None) -> Dataset:
+Data: TypeAlias = "str | Path | Mapping[str, Any] | Dataset | DataFrame"
+"""What can be made a data set of."""
+
+
+def as_dataset(data: Data, *, relative_to: Path | None = None, missing: Missing = "refuse") -> Dataset:
+    """A data set of whatever stands for one: itself, a name or path, a pandas data frame, a mapping of arrays.
+
+    Parameters
+    ----------
+    data : as for :func:`load_dataset`
+    relative_to : folder that relative paths start from; the current one by default
+    missing : whether cells without a value are refused, or kept (NaN, empty labels); a `Dataset` is returned as it is
+
+    Raises
+    ------
+    InputError
+        as :func:`load_dataset` does
+    """
+    if isinstance(data, Dataset):
+        return data
+    if isinstance(data, (str, Path)):
+        return load_dataset(data, relative_to=relative_to, missing=missing)
+    if not hasattr(data, "items"):
+        raise InputError(
+            f"data: found {type(data).__name__}; expected the name or path of a data set, a data frame, or a mapping of column "
+            "headers to values"
+        )
+    return Dataset.from_columns(data, missing=missing)
+
+
+def load_dataset(
+    name_or_path: Data, *, relative_to: Path | None = None, missing: Missing = "refuse"
+) -> Dataset:
     """Read a data set and check every cell.
 
     Parameters
     ----------
     name_or_path : name of a shipped data set, path of a CSV, or of a folder with ``data.csv`` and
-        ``provenance.toml``. A shipped name wins; write ``./name`` for a folder of the same name
+        ``provenance.toml``. A shipped name wins; write ``./name`` for a folder of the same name. A data frame or a
+        mapping is read by :meth:`Dataset.from_columns`
     relative_to : folder that relative paths start from (that of a model file); the current one by default
+    missing : whether cells without a value are refused, or kept (NaN, empty labels)
 
     Returns
     -------
@@ -196,6 +328,8 @@ def load_dataset(name_or_path: str | Path, *, relative_to: Path | None = None) -
     >>> data.labels("state"), data.columns["friction_coefficient"].tolist(), data.units["normal_force"]
     (('dry', 'wet'), [0.3, 1.4], 'N')
     """
+    if not isinstance(name_or_path, (str, Path)):
+        return as_dataset(name_or_path, missing=missing)
     key, path, described_in = find_dataset(name_or_path, relative_to=relative_to)
     provenance = None
     if described_in is not None:
@@ -210,8 +344,8 @@ def load_dataset(name_or_path: str | Path, *, relative_to: Path | None = None) -
     table = read_table(path, problems=problems)
     if provenance is not None and described_in is not None:
         check_sha256(provenance, path, table.sha256, described_in)
-    columns, units = read_columns(table, problems)
-    return Dataset(key, path, columns, units, provenance, table.sha256)
+    columns, units = read_columns(table, problems, missing)
+    return Dataset(key, path, columns, units, provenance, table.sha256, lines=table.lines)
 
 
 def find_dataset(

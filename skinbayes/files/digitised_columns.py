@@ -12,11 +12,12 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.files.columns import refuse_quantity
 from skinbayes.files.digitised import DigitisedSet
 from skinbayes.files.digitised_axes import AxisMeaning
 from skinbayes.files.table import quoted
 from skinbayes.units import convert_array, format_quantity, parse_quantity
-from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, suggestions
+from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, lookup
 
 PIXEL_ERROR = 1.0
 """Standard deviation of a pixel coordinate if nothing else is said, pixels."""
@@ -123,11 +124,11 @@ def _check_labels(sets: Mapping[str, DigitisedSet], label_column: str | None, wh
                 f"tells them apart: {', '.join(LABELS)}"
             )
         return
-    if label_column not in LABELS:
+    if not label_column.strip() or lookup(label_column) is not None:
         raise InputError(
-            f"--label-column: found {quoted(label_column)}; expected a label column: {', '.join(LABELS)}."
-            f"{suggestions(label_column[:80], list(LABELS))}"
+            f"--label-column: found {quoted(label_column)}; expected a label column, such as {', '.join(LABELS)}"
         )
+    refuse_quantity(label_column, list(sets))
     for label in sets:
         _check_label(label, f"{where}: data set {quoted(label)}")
 
@@ -142,12 +143,12 @@ def _check_label(label: str, where: str) -> None:
 
 def _constant(name: str, text: str) -> float | str:
     where = f"--constant {name}"
-    if name in LABELS:
+    if lookup(name) is None:
+        refuse_quantity(name, [text])
         _check_label(text, where)
         return text
     if name not in QUANTITIES:
-        known = [*QUANTITIES, *LABELS]
-        raise InputError(f"{where}: unknown quantity or label.{suggestions(name[:80], known)}")
+        raise InputError(f"{where}: expected a quantity or a label, not a spread")
     value = parse_quantity(text, QUANTITIES[name].unit, where=where)
     if not QUANTITIES[name].admits(value):
         raise InputError(f"{where}: found {text[:40]}; expected {QUANTITIES[name].range_text()}")

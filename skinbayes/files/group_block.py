@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from skinbayes.errors import InputError
 from skinbayes.files.modelschema import CovariateBlock, GroupBlock
-from skinbayes.files.parameter_block import ParameterSpec, parse_parameter, parse_value
+from skinbayes.files.parameter_block import ParameterSpec, label_column, parse_parameter, parse_value
 from skinbayes.statistics.noise_families import NOISE_FAMILIES
-from skinbayes.vocabulary import LABELS, QUANTITIES, suggestions
+from skinbayes.vocabulary import QUANTITIES, suggestions
 
 GROUP, COVARIATE = "group", "covariate"
 """What ``group_scale`` and ``covariate_exponent`` differ by."""
@@ -53,10 +53,7 @@ def read_groups(
     found = []
     for column, block in blocks.items():
         place = where("groups", column)
-        if column not in LABELS:
-            raise InputError(
-                f"{place}: found {column!r}.{suggestions(column, list(LABELS))} Expected a grouping column: {', '.join(LABELS)}"
-            )
+        label_column(column, place)
         if not noise:
             raise InputError(
                 f"{place}: a model without data has no groups; leave them out, or add [data] and [noise]"

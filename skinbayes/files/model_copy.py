@@ -12,7 +12,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset, load_dataset
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelfile import ModelSpec, load_model
-from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX, suggestions
+from skinbayes.vocabulary import lookup, spread_of, suggestions
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def copy_model(name: str, target: Path, data: str | Path | None = None) -> Model
                 f"'{name}' has no [data] block, so it cannot take data: copy it without --data, and give the copy a [data] and "
                 "a [noise] block (docs/model-files.md)"
             )
-        _take_data(lines, spec, load_dataset(data), target, changes)
+        _take_data(lines, spec, load_dataset(data, missing="keep"), target, changes)
     return ModelCopy("\n".join(lines) + "\n", tuple(changes))
 
 
@@ -92,11 +92,7 @@ def _resource_noise(lines: list[str], spec: ModelSpec) -> None:
 def _take_data(lines: list[str], spec: ModelSpec, dataset: Dataset, target: Path, changes: list[str]) -> None:
     """Point ``[data]`` at a CSV: its path, all its rows, its spreads; parameters that are its columns become comments."""
     path = os.path.relpath(dataset.path.resolve(), target.resolve().parent)
-    spreads = [
-        name.removesuffix(STANDARD_DEVIATION_SUFFIX)
-        for name in dataset.columns
-        if name.endswith(STANDARD_DEVIATION_SUFFIX)
-    ]
+    spreads = [base for name in dataset.units if (base := spread_of(name)) and lookup(name) is not None]
     start, end = _table(lines, "data")
     kept = [
         line

@@ -15,9 +15,9 @@ from skinbayes.files.group_block import CovariateSpec, read_covariates, read_gro
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, ModelBlock, RheologyBlock
 from skinbayes.files.noise_block import noise_parameter_names, read_noise
-from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_value
+from skinbayes.files.parameter_block import ParameterSpec, label_column, parse_levels, parse_value
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
-from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
+from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,7 @@ class ModelSpec:
     dataset, rows, observables : the data set (shipped key or path; None if the user brings it), the rows kept, the columns
         explained (empty for a model without data)
     spread, input_spread : whether spread columns of the observables, and of the inputs, are used; None if not said
+    missing : ``"drop"`` if rows without a value in a column that is used are left out
     surface_name, surface_file : named surface or tabulated spectrum
     parameters : parameters of the forward model, fixed and free
     noise : observable to the name of its noise family
@@ -57,6 +58,7 @@ class ModelSpec:
     observables: tuple[str, ...] = ()
     spread: str | None = None
     input_spread: str | None = None
+    missing: str | None = None
     surface_name: str | None = None
     surface_file: Path | None = None
     noise: dict[str, str] = field(default_factory=dict)
@@ -133,10 +135,8 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         return str((path.parent / table.file).resolve())
 
     rheology = block.rheology
-    if rheology is not None and rheology.by not in LABELS:
-        raise InputError(
-            f"{where('rheology', 'by')}: found {rheology.by!r}; expected a grouping column: {', '.join(LABELS)}"
-        )
+    if rheology is not None:
+        label_column(rheology.by, where("rheology", "by"))
     surface = block.surface
     surface_file = None
     if surface is not None and surface.file is not None:
@@ -154,6 +154,7 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         observables=() if data is None else tuple(data.names()),
         spread=None if data is None else data.spread,
         input_spread=None if data is None else data.input_spread,
+        missing=None if data is None else data.missing,
         surface_name=None if surface is None else surface.name,
         surface_file=surface_file,
         noise=families,

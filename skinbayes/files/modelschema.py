@@ -28,6 +28,7 @@ class DataBlock(_Strict):
     rows: dict[str, list[str]] = Field(default_factory=dict)
     spread: Literal["use", "ignore"] | None = None
     input_spread: Literal["use", "ignore"] | None = None
+    missing: Literal["drop"] | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> DataBlock:
@@ -43,8 +44,9 @@ class DataBlock(_Strict):
         return self
 
     def names(self) -> list[str]:
-        """All observables."""
-        return list(self.observables or [str(self.observable)])
+        """All observables; a friction force is explained as the friction coefficient that it makes with the normal force."""
+        names = self.observables or [str(self.observable)]
+        return ["friction_coefficient" if name == "friction_force" else name for name in names]
 
 
 class SurfaceBlock(_Strict):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any
 
@@ -12,7 +12,10 @@ import numpy as np
 from skinbayes.errors import InputError
 from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
 from skinbayes.units import parse_quantity
-from skinbayes.vocabulary import LABELS, Quantity, suggestions
+from skinbayes.vocabulary import LABELS, Quantity, lookup, suggestions
+
+RESERVED_NAMES = ("chain", "draw", "row")
+"""Dimensions of results."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,8 @@ class ParameterSpec:
     ----------
     name : name in the vocabulary
     unit : SI unit
-    by, level : what the parameter differs by (a grouping column, the observables, …) and the level it is for; otherwise None
+    by, level : what the parameter differs by (a label column, the observables, …) and the level it is for; otherwise None
+    by_column : whether that is a label column of the rows
     value : SI value of a fixed parameter, else None
     prior : prior of a free parameter in SI, else None
     prior_text : the prior as it was written
@@ -38,6 +42,7 @@ class ParameterSpec:
     prior: Prior | None
     prior_text: str
     source: str
+    by_column: bool = False
 
     @property
     def label(self) -> str:
@@ -112,18 +117,27 @@ def parse_levels(
     """
     if not (isinstance(entry, dict) and "by" in entry):
         return [parse_parameter(quantity, entry, where(), unit)]
-    column = entry["by"]
-    if not isinstance(column, str) or column not in LABELS:
-        raise InputError(
-            f"{where('by')}: found {column!r:.60}; expected a grouping column: {', '.join(LABELS)}"
-        )
+    column = label_column(entry["by"], where("by"))
     levels = {key: value for key, value in entry.items() if key != "by"}
     if not levels:
         raise InputError(f"{where()}: 'by = \"{column}\"' but no level is given")
     return [
-        parse_parameter(quantity, value, where(level), unit, by=column, level=level)
+        replace(parse_parameter(quantity, value, where(level), unit, by=column, level=level), by_column=True)
         for level, value in levels.items()
     ]
+
+
+def label_column(name: Any, where: str) -> str:
+    """A name that a label column can have; :class:`InputError` for others, such as that of a quantity."""
+    if not isinstance(name, str) or not name.strip() or name != name.strip() or lookup(name) is not None:
+        raise InputError(
+            f"{where}: found {name!r:.60}; expected a label column of the data, such as {', '.join(LABELS)}"
+        )
+    if name in RESERVED_NAMES or "/" in name:
+        raise InputError(
+            f"{where}: '{name:.60}' cannot stand in results; expected another name of the column"
+        )
+    return name
 
 
 def parse_value(quantity: Quantity, raw: Any, where: str, unit: str | None = None) -> float:

@@ -1,11 +1,10 @@
-"""Comma-separated text from disk to cells, with errors that name the line.
+"""A table of text from disk to cells, with errors that name the line.
 
 Nothing here knows quantities; it makes sure that what comes out is a rectangular table of text.
 """
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import re
 from collections.abc import Iterator
@@ -13,7 +12,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from skinbayes.errors import NEXT_PROBLEM, InputError
-from skinbayes.files.reading import open_file
+from skinbayes.files.reading import read_file
+from skinbayes.files.separated import Records, decoded, numbered_lines, with_points
 
 MAX_ROWS = 100_000
 """Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: with 64
@@ -25,12 +25,7 @@ LARGEST_TABLE = 100_000_000
 MOST_COLUMNS = 1000
 """Columns of a table."""
 
-MOST_LINES = 2 * MAX_ROWS
-"""Lines of a table with its comments and empty lines."""
-
-_LONGEST_LINE = 100_000  # bytes; a table of quantities has lines of some hundred
 _DIGITS = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 MOST_SHOWN = 10
 """Problems of a file that a message lists."""
@@ -41,11 +36,12 @@ class Problems:
     """Collects what is wrong with a file, to report all of it at once, in the order of the file."""
 
     path: Path
+    row_word: str = "line"
     count: int = 0
     _noted: dict[tuple[int, str], list[tuple[int, int, str]]] = field(default_factory=dict)
 
     def add(self, line: int, position: int, text: str, kind: str = "") -> None:
-        """Note a problem at a line (the first line of the file is 1) and a column position.
+        """Note a problem at a line (the first line of the file is 1; 0 for none) and a column position.
 
         Where there are too many to be listed, the first of each ``kind`` in each column comes before others of its kind.
         """
@@ -60,9 +56,10 @@ class Problems:
             return
         first = sorted(alike[0] for alike in self._noted.values())
         others = sorted(problem for alike in self._noted.values() for problem in alike[1:])
-        shown = [f"line {line}{text}" for line, _, text in sorted([*first, *others][:MOST_SHOWN])]
+        listed = sorted([*first, *others][:MOST_SHOWN])
+        shown = [f"{self.row_word} {line}{text}" if line else text.lstrip(":, ") for line, _, text in listed]
         if self.count == 1:
-            raise InputError(f"{self.path}, {shown[0]}")
+            raise InputError(f"{self.path}{', ' if listed[0][0] else ': '}{shown[0]}")
         if left := self.count - len(shown):
             shown.append(f"and {left} more")
         raise InputError(NEXT_PROBLEM.join((f"{self.path}: {self.count} problems", *shown)))
@@ -74,10 +71,11 @@ class Table:
 
     Attributes
     ----------
-    path : the file
-    header, header_line : column headers as written, and their line number
+    path : the file, or the name of what was given in its place
+    header, header_line : column headers as written, and their line number (0 if there is no file)
     lines, rows : line number and cells of every row of data
     sha256 : of the bytes of the file
+    row_word : what ``lines`` count, ``"line"`` of a file or ``"row"``
     """
 
     path: Path
@@ -86,6 +84,12 @@ class Table:
     lines: tuple[int, ...]
     rows: tuple[tuple[str, ...], ...]
     sha256: str
+    row_word: str = "line"
+
+    @property
+    def header_place(self) -> str:
+        """Where the header stands, for messages."""
+        return f"{self.path}, line {self.header_line}" if self.header_line else f"{self.path}"
 
     def column(self, position: int) -> list[str]:
         """Cells of one column, without surrounding blanks."""
@@ -98,10 +102,12 @@ def quoted(text: str, longest: int = 40) -> str:
 
 
 def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | None = None) -> Table:
-    """Read comma-separated text: UTF-8, one header line, comments.
+    """Read a table of text: one header line, comments, cells separated by commas, semicolons or tabs.
 
-    A line that begins with ``#`` is a comment, unless it can be a row: the first column holds labels (its header has no
-    unit), the line has all its cells, and one of those under a unit is a number. A label may begin with ``#``.
+    What separates the cells is seen in the header, or said by a first line ``sep=;``. Numbers may have decimal commas where
+    no other reading is possible; they are then written with points in what is returned. A line that begins with ``#`` is a
+    comment, unless it can be a row: the first column holds labels (its header has no unit), the line has all its cells, and
+    one of those under a unit is a number. A label may begin with ``#``. Rows and columns without any text are left out.
 
     Parameters
     ----------
@@ -112,31 +118,26 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | Non
     Raises
     ------
     InputError
-        for an unreadable, empty, binary, wrongly encoded, too long or ragged file, or another separator
+        for an unreadable, empty, binary, wrongly encoded, too long or ragged file, or one that can be read in two ways
     """
-    digest = hashlib.sha256()
+    data = read_file(path, LARGEST_TABLE, "a CSV file")
     noted = Problems(path) if problems is None else problems
-    header: tuple[str, ...] | None = None
-    header_line = 0
-    comment = ""  # the last one
+    text = decoded(data, path)
+    records = Records(text, path)
+    header_line, header = next(records, (0, ()))
+    header = tuple(" ".join(cell.split()) for cell in header)
+    if not header:
+        raise InputError(f"{path}: the file is empty; expected a header line such as 'normal_force [N]'")
+    if len(header) > MOST_COLUMNS:
+        raise InputError(
+            f"{path}, line {header_line}: {len(header)} columns; expected a table of at most {MOST_COLUMNS}"
+        )
+    _check_header(header, records.comment, f"{path}, line {header_line}")
+    records.header = header
     lines: list[int] = []
     rows: list[tuple[str, ...]] = []
-    for number, raw in _lines(path):
-        digest.update(raw)
-        text = _decode(raw, path, number)
-        if not text.strip():
-            continue
-        if text.lstrip().startswith("#") and not (header and _may_be_row(text, header)):
-            comment = text
-            continue
-        cells = _split(text, path, number)
-        if header is None:
-            if len(cells) > MOST_COLUMNS:
-                raise InputError(
-                    f"{path}, line {number}: {len(cells)} columns; expected a table of at most {MOST_COLUMNS}"
-                )
-            header, header_line = cells, number
-            _check_header(text, comment, path, number)
+    for number, cells in records:
+        if not any(cell.strip() for cell in cells):  # as spreadsheets leave them below a table
             continue
         if len(rows) == max_rows:
             raise InputError(
@@ -148,31 +149,22 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | Non
             continue
         lines.append(number)
         rows.append(cells)
-    if header is None:
-        raise InputError(f"{path}: the file is empty; expected a header line such as 'normal_force [N]'")
     if problems is None:
         noted.raise_if_any()
     if not rows and not noted.count:
         raise InputError(
             f"{path}, line {header_line}: no rows of data below the header; expected at least one"
         )
-    return Table(path, header, header_line, tuple(lines), tuple(rows), digest.hexdigest())
-
-
-def _may_be_row(text: str, header: tuple[str, ...]) -> bool:
-    cells = _cells(text)
-    if cells is None or len(cells) != len(header) or "[" in header[0]:
-        return False
-    return any(
-        "[" in name and _DIGITS.fullmatch(cell.strip()) for name, cell in zip(header, cells, strict=True)
-    )
+    named = [i for i, name in enumerate(header) if name.strip() or any(row[i].strip() for row in rows)]
+    if len(named) < len(header):
+        header, rows = tuple(header[i] for i in named), [tuple(row[i] for i in named) for row in rows]
+    rows = with_points(path, header, lines, rows, records.separator)
+    return Table(path, header, header_line, tuple(lines), tuple(rows), hashlib.sha256(data).hexdigest())
 
 
 def _length(cells: tuple[str, ...], expected: int) -> str:
     """What is wrong with the number of cells of a row, and what may be behind it."""
     found = f"found {len(cells)} cells; expected {expected} as in the header"
-    if not any(cell.strip() for cell in cells):
-        return f"{found}; the row is empty: remove its commas"
     if len(cells) > expected and not any(cell.strip() for cell in cells[expected:]):
         return f"{found}; those too many are empty: remove the commas at the end"
     if len(cells) > expected:
@@ -181,87 +173,20 @@ def _length(cells: tuple[str, ...], expected: int) -> str:
 
 
 def text_lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Number (from 1) and text of every line of a UTF-8 file, without line ends.
+    """Number (from 1) and text of every line of a file, without line ends.
 
     Raises
     ------
     InputError
         for an unreadable, binary or wrongly encoded file, or a line too long for a table
     """
-    for number, raw in _lines(path):
-        yield number, _decode(raw, path, number)
+    for number, line in numbered_lines(decoded(read_file(path, LARGEST_TABLE, "a CSV file"), path), path):
+        yield number, line.rstrip("\n")
 
 
-def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
-    try:
-        with open_file(path, LARGEST_TABLE, "a CSV file") as stream:
-            number = 0
-            while raw := stream.readline(_LONGEST_LINE):
-                number += 1
-                if number > MOST_LINES:
-                    raise InputError(f"{path}: more than {MOST_LINES} lines; expected a table")
-                if b"\0" in raw:
-                    raise InputError(
-                        f"{path}, line {number}: found a zero byte (byte {raw.index(0) + 1} of the line); "
-                        "expected comma-separated text in UTF-8, not UTF-16, not a binary file or spreadsheet"
-                    )
-                if len(raw) == _LONGEST_LINE:
-                    raise InputError(
-                        f"{path}, line {number}: longer than {_LONGEST_LINE} bytes; expected a table"
-                    )
-                yield number, raw
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.strerror or error}); expected a CSV file"
-        ) from error
-
-
-def _decode(raw: bytes, path: Path, number: int) -> str:
-    mark = number == 1 and raw.startswith(_BYTE_ORDER_MARK)
-    try:
-        text = raw[len(_BYTE_ORDER_MARK) if mark else 0 :].decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path}, line {number}: byte {error.start + 1} of the line (0x{error.object[error.start]:02x}) "
-            "is not UTF-8; expected comma-separated text saved as UTF-8"
-        ) from None
-    text = text.rstrip("\r\n")
-    if "\r" in text:
-        raise InputError(
-            f"{path}, line {number}: found a bare carriage return; expected lines ending in a line feed"
-        )
-    return text
-
-
-def _split(text: str, path: Path, number: int) -> tuple[str, ...]:
-    cells = _cells(text)
-    if cells is None:
-        raise InputError(
-            f'{path}, line {number}: quotation marks do not match; expected cells such as "a, b" on one line'
-        )
-    return cells
-
-
-def _cells(text: str) -> tuple[str, ...] | None:
-    """Cells of a line; None if its quotation marks do not match."""
-    if '"' not in text:
-        return tuple(text.split(","))
-    try:
-        return tuple(next(csv.reader([text], strict=True, skipinitialspace=True)))
-    except (csv.Error, StopIteration):
-        return None
-
-
-def _check_header(text: str, comment: str, path: Path, number: int) -> None:
-    for character, name in ((";", "semicolons"), ("\t", "tabs")):
-        if character in text and "," not in text:
-            raise InputError(
-                f"{path}, line {number}: cells are separated by {name}; expected commas between cells and "
-                "points as decimal separators"
-            )
-    numbers = [bool(_DIGITS.fullmatch(cell.strip())) for cell in text.split(",")]
-    if all(numbers):
+def _check_header(header: tuple[str, ...], comment: str, where: str) -> None:
+    if all(_DIGITS.fullmatch(cell.strip()) for cell in header):
         hint = "; the header above it begins with #: remove the #" if "[" in comment else ""
         raise InputError(
-            f"{path}, line {number}: found numbers; expected a header line first, such as 'normal_force [N]'{hint}"
+            f"{where}: found numbers; expected a header line first, such as 'normal_force [N]'{hint}"
         )

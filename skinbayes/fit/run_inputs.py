@@ -112,11 +112,11 @@ def write_inputs(directory: Path, problem: Problem) -> Manifest:
         settings["surface"] = problem.settings["surface"]
     if problem.dataset is not None:
         source = Path(problem.dataset.path)
-        note["data"] = f"data/{source.name}"
+        note["data"] = "data/columns.csv" if problem.dataset.in_memory else f"data/{source.name}"
         copies[note["data"]] = source
         note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
         provenance = source.with_name("provenance.toml")
-        if source.name == "data.csv" and provenance.exists():
+        if not problem.dataset.in_memory and source.name == "data.csv" and provenance.exists():
             copies[f"data/{provenance.name}"] = provenance
             note["data"] = "data"
     if problem.spec.rheology is not None and Path(problem.spec.rheology).is_file():
@@ -127,7 +127,12 @@ def write_inputs(directory: Path, problem: Problem) -> Manifest:
         note["surface"] = "spectrum.csv"
     copies |= {f"{YARDSTICK_MODELS}/{path.name}": path for path in own_yardsticks(problem)}
     # read first: the user may point at the copies of an earlier run in this very directory
-    contents = {name: source.read_bytes() for name, source in copies.items()}
+    contents = {
+        name: problem.dataset.to_csv().encode()
+        if problem.dataset is not None and problem.dataset.in_memory and name == note["data"]
+        else source.read_bytes()
+        for name, source in copies.items()
+    }
     files = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
     manifest = Manifest(problem.name, problem.fingerprint, **note, settings=settings, files=files)
     # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again

@@ -161,7 +161,7 @@ def _from_copies(run: Path, manifest: Manifest) -> Problem:
     rheology = None if manifest.rheology is None else run / manifest.rheology
     data: Dataset | None = None
     if manifest.data is not None:
-        data = load_dataset(run / manifest.data)
+        data = load_dataset(run / manifest.data, missing="keep")
         # which need not be those that the model file selects
         data = data.select(manifest.rows) if manifest.rows else data
     problem = load_problem(run / "model.toml", data, settings, rheology=rheology)

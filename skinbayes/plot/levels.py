@@ -17,6 +17,7 @@ from skinbayes.plot.rows import (
     effect_draws,
     followed_profile,
     group_columns,
+    label_columns,
     levels_of_rows,
     row_abscissa,
     row_predictions,
@@ -35,7 +36,6 @@ from skinbayes.plot.style import (
     set_title,
 )
 from skinbayes.plot.symbols import axis_name, spoken_name
-from skinbayes.vocabulary import LABELS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +84,7 @@ def plot_levels(
         ``column`` is no grouping column.
     """
     columns = telling_columns(fit)
-    if column is not None and column not in LABELS:
+    if column is not None and column not in label_columns(fit):
         known = (
             f"these data can be drawn by {', '.join(columns)}" if columns else "no column groups these data"
         )

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.predictive import row_names
-from skinbayes.vocabulary import LABELS
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -94,14 +93,22 @@ def levels_of_rows(fit: Fit, column: str) -> NDArray[np.str_]:
     return np.asarray(fit.groups["constant_data"][column].values).astype(np.str_)
 
 
-def telling_columns(fit: Fit) -> list[str]:
-    """Columns of labels by which data can be looked at: those with effects, and others of several levels of several rows."""
+def label_columns(fit: Fit) -> list[str]:
+    """Columns of labels of the rows of a fit."""
     if "constant_data" not in fit.groups:
         return []
-    known = fit.groups["constant_data"].data_vars
+    return [
+        str(name)
+        for name, found in fit.groups["constant_data"].data_vars.items()
+        if found.dtype.kind not in "fiub"
+    ]
+
+
+def telling_columns(fit: Fit) -> list[str]:
+    """Columns of labels by which data can be looked at: those with effects, and others of several levels of several rows."""
     effects, rows = group_columns(fit), len(row_names(fit))
-    others = [c for c in known if c in LABELS and c not in effects and c != "row_label"]
-    return effects + [str(c) for c in others if 1 < len(set(levels_of_rows(fit, str(c)))) <= rows // 2]
+    others = [c for c in label_columns(fit) if c not in effects and c != "row_label"]
+    return effects + [c for c in others if 1 < len(set(levels_of_rows(fit, c))) <= rows // 2]
 
 
 def followed_profile(problem: Problem, middle: FloatArray) -> tuple[Profile, FloatArray] | None:

@@ -17,6 +17,7 @@ from skinbayes.problem.failures import explained
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
+from skinbayes.problem.rows import data_notes
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -117,6 +118,7 @@ def _setup(problem: Problem) -> tuple[str, ...]:
             + "; ".join(f"{o.name}, noise {o.noise.name}" for o in problem.observations)
             + "."
         )
+        said += data_notes(problem)
         if free > rows:
             said.append(
                 f"There are more free parameters ({free}) than data ({rows}): the priors decide what remains open."

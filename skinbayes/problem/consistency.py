@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
-from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.parameter_block import RESERVED_NAMES, ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.roughness import PowerSpectrum
-from skinbayes.vocabulary import LABELS, QUANTITIES, suggestions
+from skinbayes.vocabulary import LABELS, QUANTITIES, lookup, meant, suggestions
 
-RESERVED_NAMES = ("chain", "draw", "row")
-"""Dimensions of results."""
+
+def near_miss(columns: Collection[str], wanted: Collection[str]) -> str:
+    """A sentence on the first column of unknown name that may have been meant to be one of those wanted; empty without one."""
+    for column in columns:
+        if lookup(column) is None and (found := meant(column, wanted)):
+            return f" The data have a column '{column}': did you mean '{found[0][0]}'?"
+    return ""
 
 
 def check_names(
@@ -35,19 +40,30 @@ def check_names(
 
 
 def check_required(
-    spec: ModelSpec, forward: ForwardModel, given: set[str], table: PowerSpectrum | None
+    spec: ModelSpec,
+    forward: ForwardModel,
+    given: set[str],
+    table: PowerSpectrum | None,
+    columns: Collection[str] = (),
 ) -> None:
-    """Refuse a model that lacks an input its forward model needs, or has one that would be ignored."""
+    """Refuse a model that lacks an input its forward model needs, or has one that would be ignored.
+
+    Of the ``columns`` of the data the one that may have been meant is named.
+    """
     for entry in forward.required:
         if isinstance(entry, str):
             if entry not in given:
                 raise InputError(
-                    f"{spec.path}: '{forward.name}' needs {entry}: give it in [parameters] or as a column of the data"
+                    f"{spec.path}: '{forward.name}' needs {entry}: give it in [parameters] or as a column of the data."
+                    f"{near_miss(columns, [entry])}".rstrip(".")
                 )
         elif not any(set(names) <= given for names in entry):
             options = "; or ".join(" and ".join(names) for names in entry)
             raise InputError(
-                f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data"
+                f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data."
+                f"{near_miss(columns, [name for names in entry for name in names if name not in given])}".rstrip(
+                    "."
+                )
             )
     inert = [name for name in ROUGHNESS_INPUTS if name in given and name != "rms_height"]
     if table is not None and inert:

@@ -34,7 +34,7 @@ def straightened(problem: Problem, usual: VectorTransform) -> VectorTransform:
     additive = not problem.noise_is_logarithmic.all()
     funnels: dict[str, Funnel] = {}
     added: Added | None = None
-    for column, name in dict.fromkeys((p.by, p.name) for p in problem.free if p.by):
+    for column, name in dict.fromkeys((p.by, p.name) for p in problem.free if p.by and p.by_column):
         levels = tuple(i for i, p in enumerate(problem.free) if (p.by, p.name) == (column, name))
         scale = f"group_scale[{column}]"
         shared = scale in names and logarithmic[names.index(scale)]

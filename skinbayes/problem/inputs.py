@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.vocabulary import LABELS
+from skinbayes.vocabulary import meant, suggestions
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,14 @@ class InputPlan:
         return self.index >= 0, np.maximum(self.index, 0), self.fixed[np.newaxis, :]
 
 
+def label_meant(column: str, labels: Collection[str]) -> str:
+    """A sentence on the label columns that there are instead of one that is not, or on the one that may be meant."""
+    said = suggestions(column, labels)
+    other = next((label for label in labels if meant(label, [column])), None)
+    listed = ", ".join(labels) or "none"
+    return said or (f" Label columns: {listed}" if other is None else f" Did you mean '{other}'?")
+
+
 def plan_inputs(
     fixed: Sequence[ParameterSpec], free: Sequence[ParameterSpec], conditions: Conditions
 ) -> tuple[InputPlan, ...]:
@@ -104,19 +112,19 @@ def plan_inputs(
 
 def _input_name(spec: ParameterSpec) -> str:
     """Parameters that differ by a column of the rows are one input, those that differ by something else are several."""
-    return spec.name if spec.by is None or spec.by in LABELS else spec.label
+    return spec.label if spec.by is not None and not spec.by_column else spec.name
 
 
 def _plan_one(name: str, entries: list[tuple[ParameterSpec, int]], conditions: Conditions) -> InputPlan:
     column = entries[0][0].by
-    if column is None or column not in LABELS:
+    if column is None or not entries[0][0].by_column:
         (spec, position), *_ = entries
         value = np.nan if spec.value is None else spec.value
         return InputPlan(name, np.array([position]), np.array([value]))
     if column not in conditions.labels:
         raise InputError(
             f"{name} differs by '{column}', but the rows have no column '{column}': add it ('skinbayes template' prints the "
-            "header that a model needs)"
+            f"header that a model needs).{label_meant(column, conditions.labels)}".rstrip(".")
         )
     index = np.full(conditions.n_rows, -2)
     fixed = np.full(conditions.n_rows, np.nan)

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
+from skinbayes.files.dataset import Data, Dataset, as_dataset, find_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import ROUGHNESS_INPUTS, Tables, forward_model
+from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, Tables, forward_model
 from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
 from skinbayes.problem.covariates import check_covariates
 from skinbayes.problem.failures import explained
@@ -20,7 +20,14 @@ from skinbayes.problem.inputs import plan_inputs
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.problem import Problem
 from skinbayes.problem.rheology import REPLACED, flow_curves_of, load_flow_curves
-from skinbayes.problem.rows import crossed_groups, data_rows, default_rows, relative_input_spread, user_rows
+from skinbayes.problem.rows import (
+    crossed_groups,
+    data_rows,
+    default_rows,
+    relative_input_spread,
+    used_columns,
+    user_rows,
+)
 from skinbayes.problem.settings import apply_settings
 from skinbayes.roughness import TabulatedSpectrum, named_surface
 from skinbayes.vocabulary import QUANTITIES
@@ -28,9 +35,9 @@ from skinbayes.vocabulary import QUANTITIES
 
 def load_problem(
     name: str | Path,
-    data: str | Path | Dataset | None = None,
+    data: Data | None = None,
     settings: Mapping[str, str] | None = None,
-    conditions: str | Path | None = None,
+    conditions: Data | None = None,
     rheology: str | Path | None = None,
 ) -> Problem:
     """Bind a model to its data.
@@ -38,11 +45,11 @@ def load_problem(
     Parameters
     ----------
     name : shipped model or path of a model file
-    data : a CSV of the user's own (or a data set) to use instead of the one named in the model file; of a
-        :class:`Dataset` all rows are used, whichever the model file selects
+    data : a CSV of the user's own (or a data set, a data frame, a mapping of columns) to use instead of the one named in the
+        model file; of a :class:`Dataset` all rows are used, whichever the model file selects
     settings : values to fix, as text with unit: ``{"yield_stress": "40 MPa", "surface": "paper_printed"}``;
         ``name[level]`` fixes one level of a parameter that differs by group
-    conditions : a CSV of rows to predict instead of the data's; such a problem has no likelihood
+    conditions : a CSV (or as ``data``) of rows to predict instead of the data's; such a problem has no likelihood
     rheology : a CSV of flow curves (or a data set) to use instead of the one named in the model file
 
     Returns
@@ -86,7 +93,7 @@ def load_problem(
             )
         bound = default_rows(spec, taken)
     else:
-        dataset = _dataset(spec, data)
+        dataset = _dataset(spec, forward, data, taken)
         if data is not None and not isinstance(data, Dataset):
             spec = _of_other_data(spec, dataset)
         bound, observations = data_rows(spec, forward, dataset, taken)
@@ -99,7 +106,13 @@ def load_problem(
     check_names(spec, forward, parameters, bound)
     given |= {p.name for p in parameters}
     check_covariates(spec, forward)
-    check_required(spec, forward, given | ({REPLACED} if curves else set()), table)
+    check_required(
+        spec,
+        forward,
+        given | ({REPLACED} if curves else set()),
+        table,
+        () if dataset is None else dataset.units,
+    )
     for key, value in forward.optional.items():
         if key not in given:
             parameters.append(
@@ -194,15 +207,21 @@ def _surface(
     return None, None, entries
 
 
-def _dataset(spec: ModelSpec, data: str | Path | Dataset | None) -> Dataset:
-    if isinstance(data, Dataset):
-        return data
+def _dataset(spec: ModelSpec, forward: ForwardModel, data: Data | None, taken: set[str]) -> Dataset:
+    """The rows of the data that the model selects, without those that lack a value it uses, if they may be dropped."""
+    drop = spec.missing == "drop"
+    dataset = data if isinstance(data, Dataset) else _selected(spec, data, drop)
+    return dataset.complete(used_columns(spec, forward, taken), drop)
+
+
+def _selected(spec: ModelSpec, data: Data | None, drop: bool) -> Dataset:
     if data is None:
         try:
             find_dataset(str(spec.dataset))
         except InputError as error:
             raise InputError(f"{spec.path}: data: {error}") from None
-    dataset = load_dataset(data if data is not None else str(spec.dataset))
+    dataset = as_dataset(data if data is not None else str(spec.dataset), missing="keep")
+    dataset = dataset.complete(spec.rows, drop)
     try:
         return dataset.select(spec.rows) if spec.rows else dataset
     except InputError as error:

@@ -2,29 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, load_dataset
+from skinbayes.files.dataset import Data, Dataset, as_dataset
 from skinbayes.files.locate import shipped_folder
 from skinbayes.files.modelfile import ModelSpec
+from skinbayes.files.parameter_block import RESERVED_NAMES
 from skinbayes.forward import ForwardModel
+from skinbayes.problem.consistency import near_miss
 from skinbayes.problem.covariates import covariate_columns
-from skinbayes.problem.inputs import Conditions
+from skinbayes.problem.inputs import Conditions, label_meant
 from skinbayes.problem.observations import Observation
 from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise_families import noise_family
-from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import (
+    STANDARD_DEVIATION_SUFFIX,
+    STANDARD_ERROR_SUFFIX,
+    lookup,
+    spread_of,
+    suggestions,
+)
+
+if TYPE_CHECKING:
+    from skinbayes.problem.problem import Problem
 
 MOST_ROWS = 10_000
 """Rows that a problem may have: so many were run, in less than a gigabyte (benchmarks/rows.py)."""
 
 MOST_ROWS_OF_EXPENSIVE_MODELS = 1_000
 """Rows that a problem may have whose forward model is expensive: a film or a bridge for each of them."""
+
+MOST_LISTED = 20
+"""Lines that a sentence lists."""
+
+ROUNDING = 0.1
+"""Relative difference between a standard error and the standard deviation over sqrt(n) that rounding may make."""
+
+SPREAD_SUFFIXES = (STANDARD_DEVIATION_SUFFIX, STANDARD_ERROR_SUFFIX)
 
 MOST_LEVELS = 1_000
 """Levels of a column whose rows may share an effect: so many were run."""
@@ -39,9 +58,10 @@ def _check_count(path: object, count: int, forward: ForwardModel) -> None:
         )
 
 
-def user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Conditions:
+def user_rows(spec: ModelSpec, forward: ForwardModel, data: Data) -> Conditions:
     """Rows of a CSV of the user's; :class:`InputError` if none of its columns is an input of the forward model."""
-    dataset = load_dataset(path)
+    dataset = as_dataset(data)
+    path = dataset.path
     _check_count(path, dataset.n_rows, forward)
     rows = _columns(dataset, set(forward.input_names()), covariate_columns(spec.covariates, dataset))
     if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
@@ -54,7 +74,10 @@ def user_rows(spec: ModelSpec, forward: ForwardModel, path: str | Path) -> Condi
 def _columns(dataset: Dataset, names: set[str], covariates: Mapping[str, FloatArray]) -> Conditions:
     values = {key: np.asarray(column, dtype=float) for key, column in dataset.columns.items() if key in names}
     labels = {
-        key: column.astype(np.str_) for key, column in dataset.columns.items() if column.dtype.kind == "U"
+        key: column.astype(np.str_)
+        for key, column in dataset.columns.items()
+        # a column with empty labels is one that the model does not name; some names cannot stand in results
+        if column.dtype.kind == "U" and (column != "").all() and key not in RESERVED_NAMES and "/" not in key
     }
     return Conditions(values, labels, dataset.n_rows, covariates)
 
@@ -81,6 +104,56 @@ def data_rows(
     return rows, tuple(_observation(spec, forward, dataset, name) for name in spec.observables)
 
 
+def used_columns(spec: ModelSpec, forward: ForwardModel, taken: Collection[str]) -> set[str]:
+    """Names of the columns of data that a model uses where the data have them; the inputs ``taken`` come from elsewhere."""
+    inputs = set(forward.input_names()) - set(taken)
+    spreads = [
+        *(inputs if spec.input_spread == "use" else ()),
+        *(spec.observables if spec.spread == "use" else ()),
+    ]
+    labels = {p.by for p in (*spec.parameters, *spec.noise_parameters) if p.by_column}
+    labels |= {scale.level for scale in spec.groups} | {spec.rheology_by, *spec.rows}
+    labels |= {column for block in spec.derived.values() for column in block.rows}
+    found = inputs | set(spec.observables) | {covariate.column for covariate in spec.covariates} | labels
+    return {name for name in found if name} | {
+        name + suffix for name in spreads for suffix in SPREAD_SUFFIXES
+    }
+
+
+def data_notes(problem: Problem) -> list[str]:
+    """Sentences on rows of the data that were left out and columns that the model does not use."""
+    dataset, spec = problem.dataset, problem.spec
+    if dataset is None:
+        return []
+    said = []
+    if dataset.dropped:
+        count = len(dataset.dropped)
+        word = ("row" if dataset.in_memory else "line") + ("s" if count > 1 else "")
+        listed = ", ".join(str(line) for line in dataset.dropped[:MOST_LISTED])
+        more = f" and {count - MOST_LISTED} more" if count > MOST_LISTED else ""
+        said.append(
+            f"{count} {'row was' if count == 1 else 'rows were'} left out, without a value in a column that the model uses: "
+            f"{word} {listed}{more}."
+        )
+    used = {
+        *problem.conditions.values,
+        *problem.conditions.covariates,
+        *spec.observables,
+        "number_of_measurements",
+    }
+    if "friction_coefficient" in used:
+        used |= {"friction_force", "normal_force"}
+    wanted = {*problem.forward.input_names(), *spec.observables} - used
+    unused = []
+    for name, unit in dataset.units.items():
+        if (spread_of(name) or name) not in used:
+            guess = suggestions(name, wanted).strip() if lookup(name) is None else ""
+            unused.append(f"{name} [{unit}]" + (f" ({guess})" if guess else ""))
+    if unused:
+        said.append(f"Columns of the data that the model does not use: {', '.join(unused)}.")
+    return said
+
+
 def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name: str) -> Observation:
     several = len(spec.observables) > 1
     if name not in forward.observables:
@@ -89,12 +162,20 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
             f"expected one of {', '.join(forward.observables)}"
         )
     if name not in dataset.columns:
-        raise InputError(f"{dataset.path}: no column '{name} [..]', which the model '{spec.name}' explains")
+        force = (
+            " A friction force needs a column 'normal_force' beside it."
+            if "friction_force" in dataset.columns
+            else ""
+        )
+        raise InputError(
+            f"{dataset.path}: no column '{name} [..]', which the model '{spec.name}' explains.{force}"
+            f"{near_miss(dataset.units, [name])}".rstrip(".")
+        )
     values = np.asarray(dataset.columns[name], dtype=float)
     noise = noise_family(spec.noise[name])
-    spread_column = name + STANDARD_DEVIATION_SUFFIX
     spread = np.zeros_like(values)
-    if spread_column in dataset.columns and spec.spread is None:
+    spread_column = _spread_column(dataset, name)
+    if spread_column and spec.spread is None:
         raise InputError(
             f"{spec.path}: the data have a column '{spread_column}'; say in [data] whether it enters the likelihood: "
             'spread = "use" or spread = "ignore"'
@@ -104,13 +185,42 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
     except InputError as error:
         raise InputError(f"{dataset.path}: {name}: {error}") from None
     if spec.spread == "use":
-        if spread_column not in dataset.columns:
+        if not spread_column:
             raise InputError(
-                f"{spec.path}: data.spread = \"use\", but {dataset.path} has no column '{spread_column}'. "
+                f"{spec.path}: data.spread = \"use\", but {dataset.path} has no column '{name}{STANDARD_DEVIATION_SUFFIX}'. "
                 f"{_ways_out(spec, dataset, 'spread', f'that column, the standard deviation of each {name}')}"
             )
         spread = np.asarray(dataset.columns[spread_column], dtype=float)
     return Observation(name, values, spread, noise, several)
+
+
+def _spread_column(dataset: Dataset, name: str) -> str:
+    """The column with the standard deviation of each datum ``name``: its standard error, if the datum is a mean; or ``""``.
+
+    Raises :class:`InputError` if there is a standard deviation too that does not belong to it.
+    """
+    deviation, error = (name + suffix for suffix in SPREAD_SUFFIXES)
+    if error not in dataset.columns:
+        return deviation if deviation in dataset.columns else ""
+    if deviation in dataset.columns:
+        if "number_of_measurements" not in dataset.columns:
+            raise InputError(
+                f"{dataset.path}: found '{deviation}' and '{error}'; expected one of them, or a column 'n' with the number of "
+                "measurements that each row is the mean of"
+            )
+        of_mean, of_one, number = (
+            np.asarray(dataset.columns[column], dtype=float)
+            for column in (error, deviation, "number_of_measurements")
+        )
+        ratio = of_mean * np.sqrt(number) / of_one
+        if (apart := np.flatnonzero(np.abs(ratio - 1) > ROUNDING)).size:
+            row = int(apart[0])
+            raise InputError(
+                f"{dataset.path}: {'line' if dataset.lines and not dataset.in_memory else 'row'} "
+                f"{dataset.lines[row] if dataset.lines else row + 1}, {error}: found {ratio[row]:.3g} times "
+                f"{deviation}/sqrt(n); expected the same within {ROUNDING:.0%}"
+            )
+    return error
 
 
 def _ways_out(spec: ModelSpec, dataset: Dataset, key: str, column: str) -> str:
@@ -126,8 +236,8 @@ def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -
     """Standard deviation over value of the inputs that have a spread column, if it is to be used."""
     found = {}
     for name, values in rows.values.items():
-        column = name + STANDARD_DEVIATION_SUFFIX
-        if column not in dataset.columns:
+        column = _spread_column(dataset, name)
+        if not column:
             continue
         if spec.input_spread is None:
             raise InputError(
@@ -143,9 +253,7 @@ def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -
                     "taken relative to it"
                 )
             found[name] = spread / values
-    if spec.input_spread == "use" and not any(
-        name + STANDARD_DEVIATION_SUFFIX in dataset.columns for name in rows.values
-    ):
+    if spec.input_spread == "use" and not any(_spread_column(dataset, name) for name in rows.values):
         raise InputError(
             f'{spec.path}: data.input_spread = "use", but no input among the columns of {dataset.path} has a column '
             f"'<input>{STANDARD_DEVIATION_SUFFIX}'. {_ways_out(spec, dataset, 'input_spread', 'one')}"
@@ -161,7 +269,11 @@ def crossed_groups(spec: ModelSpec, rows: Conditions) -> CrossedGroups | None:
     for scale in spec.groups:
         column = str(scale.level)
         if column not in rows.labels:
-            raise InputError(f"{spec.path}: groups.{column}: the data have no column '{column}'")
+            raise InputError(
+                f"{spec.path}: groups.{column}: the data have no column '{column}'.{label_meant(column, rows.labels)}".rstrip(
+                    "."
+                )
+            )
         labels[column] = rows.labels[column]
         levels = len(set(labels[column].tolist()))
         if levels > MOST_LEVELS:

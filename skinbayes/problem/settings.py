@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from unicodedata import normalize
 
 from skinbayes.errors import InputError
@@ -73,7 +74,7 @@ def _replace(
         found = ", ".join(str(item) for item in levels if item) or "no levels"
         raise InputError(f"--set {key}: {name} has {found}; '{level}' is not one of them")
     return [
-        ParameterSpec(name, unit, p.by, level, value, None, f"set to {text}", "set by the user")
+        replace(p, value=value, prior=None, prior_text=f"set to {text}", source="set by the user")
         if p.name == name and p.level == level
         else p
         for p in parameters

@@ -8,6 +8,7 @@ from pathlib import Path
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
+from skinbayes.files.parameter_block import label_column
 from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
 from skinbayes.problem.rheology import REPLACED
@@ -86,7 +87,10 @@ def data_template(name: str | Path) -> DataTemplate:
     spec = load_model(name)
     forward = forward_model(spec.forward, f"{spec.path}: forward")
     notes: list[str] = []
-    labels = [TemplateColumn(label, None, LABELS[label], why) for label, why in _labels(spec).items()]
+    labels = [
+        TemplateColumn(label, None, LABELS.get(label, "label of the row"), why)
+        for label, why in _labels(spec).items()
+    ]
     inputs: list[TemplateColumn] = []
     for quantity, why in _inputs(spec, forward, notes).items():
         inputs.append(_column(quantity, why))
@@ -124,17 +128,18 @@ def _labels(spec: ModelSpec) -> dict[str, str]:
     reasons: dict[str, list[str]] = {}
     levels: dict[tuple[str, str], list[str]] = {}
     for parameter in (*spec.parameters, *spec.noise_parameters):
-        if parameter.by in LABELS and parameter.level is not None:
+        if parameter.by_column and parameter.level is not None:
             levels.setdefault((str(parameter.by), parameter.name), []).append(parameter.level)
     for (column, name), known in levels.items():
         reasons.setdefault(column, []).append(f"{name} differs by it: {', '.join(known)}")
     for scale in spec.groups:
         reasons.setdefault(str(scale.level), []).append("rows with the same one share an effect")
     for column, kept in spec.rows.items():
-        if column not in LABELS:
+        label_column(column, f"{spec.path}: data.rows")
+        own = _own_columns(spec)
+        if own and column not in own:
             raise InputError(
-                f"{spec.path}: data.rows: no label column is called '{column}'.{suggestions(column, list(LABELS))} "
-                f"Expected {', '.join(LABELS)}"
+                f"{spec.path}: data.rows: the data of the model have no column '{column}'.{suggestions(column, own)}"
             )
         reasons.setdefault(column, []).append(f"the model takes the rows with {', '.join(kept)}")
     if spec.rheology_by is not None:

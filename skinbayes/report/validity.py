@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.numbers import percent
 from skinbayes.plot.predictive import row_names
-from skinbayes.plot.rows import levels_of_rows
+from skinbayes.plot.rows import label_columns, levels_of_rows
 from skinbayes.report.words import and_list, plural
-from skinbayes.vocabulary import LABELS
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -141,9 +140,9 @@ def _which(fit: Fit, names: list[str], rows: NDArray[np.intp]) -> str:
 
 def _label_columns(fit: Fit) -> list[str]:
     """Columns of labels that tell rows apart."""
-    constant = fit.groups.get("constant_data")
-    names = [] if constant is None else [str(name) for name in constant.data_vars if name in LABELS]
-    return [name for name in names if 1 < len(set(levels_of_rows(fit, name))) < len(row_names(fit))]
+    return [
+        name for name in label_columns(fit) if 1 < len(set(levels_of_rows(fit, name))) < len(row_names(fit))
+    ]
 
 
 def _whole(column: str, whole: list[str], levels: list[str]) -> str:

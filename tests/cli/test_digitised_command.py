@@ -166,7 +166,7 @@ REFUSED: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "two data sets without label": (("wpd.json", *AXES, "-o", "n.csv"), ("2 data sets", "--label-column", "person")),
     "unknown label column": (
-        ("wpd.json", *AXES, "--label-column", "persons", "-o", "n.csv"), ("'persons'", "Did you mean 'person'")
+        ("wpd.json", *AXES, "--label-column", "load", "-o", "n.csv"), ("'load'", "Did you mean 'normal_force'")
     ),
     "same label twice": (
         ("wpd.json", *AXES, "--set-name", "circles=x", "--set-name", "a=b=x", "--label-column", "person", "-o", "n.csv"),

@@ -23,7 +23,7 @@ def harmless(text: str) -> None:
 @pytest.mark.parametrize("evil", EVIL, ids=repr)
 def test_show_of_a_table(evil: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     path = tmp_path / "mine.csv"
-    path.write_text(f"person,friction_coefficient [1]\n{evil}red,0.5\n", encoding="utf-8")
+    path.write_text(f"person,friction_coefficient [1],{evil}b\n{evil}red,0.5,{evil}\n", encoding="utf-8")
     shown = run(capsys, "show", path)
     assert shown.status == 0 and "red" in shown.output
     harmless(shown.output)

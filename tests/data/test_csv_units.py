@@ -67,9 +67,9 @@ def test_spread_columns(tmp_path: Path) -> None:
     assert data.columns["friction_coefficient_standard_deviation"].tolist() == pytest.approx([0.04])
 
 
-def test_spread_of_a_label_is_unknown(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="unknown column 'person_standard_deviation'"):
-        load_dataset(write(tmp_path, "normal_force [N],person_standard_deviation [1]\n1,1\n"))
+def test_spread_of_a_label_is_a_column_like_others(tmp_path: Path) -> None:
+    data = load_dataset(write(tmp_path, "normal_force [N],person_standard_deviation [1]\n1,2\n"))
+    assert data.columns["person_standard_deviation"].tolist() == [2.0]
 
 
 def test_values_beyond_the_largest_number_are_refused(tmp_path: Path) -> None:

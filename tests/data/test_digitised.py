@@ -148,7 +148,7 @@ DAMAGED_CSV: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "titles only": ("x,y\n", ("no points",)),
     "date": ("2020/01/01,1\n", ("line 1", "column 1 (abscissa)", "'2020/01/01'", "expected a number")),
     "open quotes": ('1,2\n"3,4\n', ("line 2", "quotation marks")),
-    "latin-1": ("Jörg,\n1,2\n".encode("latin-1"), ("line 1", "UTF-8")),
+    "code page": ("Jörg,\n1,2\n".encode("cp437"), ("line 1", "UTF-8")),
     "binary": (b"1,2\n\0\0\n", ("line 2", "zero byte")),
 }  # fmt: skip
 

@@ -265,7 +265,7 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "scale with a unit": (edited("{ half_normal = 0.5 }", '"0.1 N"'), (NOISE_LINE, "wrong dimension")),
     # levels
     "by an unknown column": (
-        edited('"20 kPa"', '{ by = "hand", left = "20 kPa" }'), ("young_modulus_bulk", "by", "'hand'", "person"),
+        edited('"20 kPa"', '{ by = "hand", left = "20 kPa" }'), ("young_modulus_bulk", "no column 'hand'"),
     ),
     "by a number": (edited('"20 kPa"', '{ by = 3, left = "20 kPa" }'), ("young_modulus_bulk", "by")),
     "by without levels": (edited('"20 kPa"', '{ by = "liquid" }'), ("young_modulus_bulk", "no level")),

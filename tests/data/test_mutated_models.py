@@ -71,7 +71,7 @@ def test_mutated_models_are_read_or_refused(name: str, tmp_path: Path) -> None:
 TINY = "noise_scale = { half_normal = 0.5"
 CASES: dict[str, tuple[str, str, str, str]] = {
     "by a list": ("forearm-glass", 'by = "state"', "by = []", "parameters.young_modulus_layer.by: found []"),
-    "by a table": ("forearm-glass", 'by = "state"', "by = { a = 1 }", "expected a grouping column"),
+    "by a table": ("forearm-glass", 'by = "state"', "by = { a = 1 }", "expected a label column"),
     "by a number": ("forearm-glass", 'by = "state"', "by = 3", "found 3"),
     "groups without data": ("contact-area", "[conditions]", "[groups.person]\nscale = 1\n[conditions]", "no groups"),
     "label of no kind": ("drying-timing", 'counterface = [', 'counerface = [', "Did you mean 'counterface'"),
