@@ -80,7 +80,11 @@ def with_modulus(inputs: Inputs) -> dict[str, FloatArray]:
     known = {name: value for name, value in at_skin(inputs).items() if name not in CURVE_INPUTS}
     if "young_modulus_layer" not in known:
         curve = young_modulus_at_humidity(
-            known["relative_humidity"], **{name: inputs[name] for name in CURVE_INPUTS}
+            known["relative_humidity"],
+            inputs["young_modulus_layer_dry"],
+            young_modulus_wet=inputs["young_modulus_layer_wet"],
+            transition_humidity=inputs["transition_humidity"],
+            sharpness=inputs["transition_sharpness"],
         )
         known["young_modulus_layer"] = np.asarray(curve)
     return known

@@ -269,16 +269,15 @@ def test_batch_and_rows_agree_to_the_last_bit(function, count):
     roughness, skin, _ = random_parameters(count, 6)
     gamma = np.random.default_rng(6).uniform(0.1, 1, count)
     at = np.geomspace(1e3, 1e6, 16) if function is mean_separation else np.geomspace(1e-7, 1e-4, 16)
-    whole = function(at, surface_from(roughness), skin_from(skin), gamma)
+    surface, material = surface_from(roughness), skin_from(skin)
+    whole = function(at, surface, skin=material, area_correction=gamma)
     assert whole.shape == (count, 16)
     for i in range(count):
-        one = surface_from(x[i] for x in roughness), skin_from(x[i] for x in skin)
-        assert identical(function(at, *one, gamma[i]), whole[i])
-        assert identical(function(at[5], *one, gamma[i]), whole[i, 5])
-    assert identical(
-        function(at[:, None, None], surface_from(roughness), skin_from(skin), gamma)[..., 0],
-        whole.T,
-    )
+        rough, body = surface_from(x[i] for x in roughness), skin_from(x[i] for x in skin)
+        assert identical(function(at, rough, skin=body, area_correction=gamma[i]), whole[i])
+        assert identical(function(at[5], rough, skin=body, area_correction=gamma[i]), whole[i, 5])
+    turned = function(at[:, None, None], surface, skin=material, area_correction=gamma)
+    assert identical(turned[..., 0], whole.T)
 
 
 def test_table_and_closed_spectrum_agree():
