@@ -17,7 +17,7 @@ from skinbayes.contact import (
     gap_distribution,
     mean_separation,
     relative_contact_area,
-    stress_variance,
+    twice_stress_variance,
 )
 from skinbayes.roughness import SelfAffineSpectrum
 from skinbayes.wetting import capillary_state
@@ -37,17 +37,32 @@ class Case:
             return middle * np.exp(rng.normal(0.0, width, COUNT))
 
         self.surface = SelfAffineSpectrum(
-            scale(22.4e-6, 0.1), rng.uniform(0.74, 0.82, COUNT), scale(1e3, 0.05), scale(6.3e3, 0.05), 1e9
+            rms_height=scale(22.4e-6, 0.1),
+            hurst_exponent=rng.uniform(0.74, 0.82, COUNT),
+            wavevector_min=scale(1e3, 0.05),
+            wavevector_rolloff=scale(6.3e3, 0.05),
+            wavevector_max=1e9,
         )
-        self.skin = LayeredSkin(scale(7e6, 0.25), scale(20e3, 0.15), 0.5, 0.5, scale(20e-6, 0.15))
+        self.skin = LayeredSkin(
+            young_modulus_layer=scale(7e6, 0.25),
+            young_modulus_bulk=scale(20e3, 0.15),
+            layer_thickness=scale(20e-6, 0.15),
+        )
         self.load, self.glass = scale(6830.0, 0.1), rng.uniform(0.0, 0.5, COUNT)
-        self.flooded = mean_separation(self.load[:, None], self.surface, self.skin)
+        self.flooded = mean_separation(self.load[:, None], self.surface, skin=self.skin)
         self.films = self.flooded * np.linspace(0.02, 1.05, FILMS)
 
     def skinbayes(self, refine: bool = False) -> np.ndarray:
         """A/A0 from the package, shape ``(64, 24)``."""
         state = capillary_state(
-            self.films, self.load, self.surface, self.skin, TENSION, SKIN_ANGLE, self.glass, refine=refine
+            self.films,
+            self.load,
+            spectrum=self.surface,
+            skin=self.skin,
+            surface_tension=TENSION,
+            contact_angle_skin=SKIN_ANGLE,
+            contact_angle_counterface=self.glass,
+            refine=refine,
         )
         return state.relative_contact_area
 
@@ -59,18 +74,18 @@ class Case:
         load = self.load[:, None]
         pressure = np.broadcast_to(load, gap.shape)
         while True:
-            gaps = gap_distribution(pressure, self.surface, self.skin)
+            gaps = gap_distribution(pressure, self.surface, skin=self.skin)
             wet = gaps.cumulative(gap[..., None])[..., 0] - gaps.contact_fraction
             following = load + pull / gap * wet
             done = np.max(np.abs(following / pressure - 1)) < BASELINE_TOLERANCE
             pressure = following
             if done:
                 break
-        film = gap_distribution(pressure, self.surface, self.skin).film(gap[..., None])[..., 0]
+        film = gap_distribution(pressure, self.surface, skin=self.skin).film(gap[..., None])[..., 0]
         film = np.concatenate([self.flooded, film], axis=1)[:, ::-1]
         pressure = np.concatenate([load, pressure], axis=1)[:, ::-1]
         found = np.array([np.interp(*row) for row in zip(self.films, film, pressure, strict=True)])
-        return relative_contact_area(found, stress_variance(self.surface, self.skin)[:, None])
+        return relative_contact_area(found, twice_stress_variance(self.surface, self.skin)[:, None])
 
 
 def run() -> dict[str, float]:

@@ -16,27 +16,29 @@ import numpy as np
 from common import COUNT, best_time, parameter_vectors, report
 from scipy.integrate import quad
 
-from skinbayes.contact import LayeredSkin, relative_contact_area, stress_variance
+from skinbayes.contact import LayeredSkin, relative_contact_area, twice_stress_variance
 from skinbayes.roughness import SelfAffineSpectrum
 
 
 def batch(p: dict[str, np.ndarray], area_correction: float) -> np.ndarray:
     """A/A0 of all vectors at once."""
     spectrum = SelfAffineSpectrum(
-        p["rms_height"],
-        p["hurst_exponent"],
-        p["wavevector_min"],
-        p["wavevector_rolloff"],
-        p["wavevector_max"],
+        rms_height=p["rms_height"],
+        hurst_exponent=p["hurst_exponent"],
+        wavevector_min=p["wavevector_min"],
+        wavevector_rolloff=p["wavevector_rolloff"],
+        wavevector_max=p["wavevector_max"],
     )
     skin = LayeredSkin(
-        p["young_modulus_layer"],
-        p["young_modulus_bulk"],
-        p["poisson_ratio_layer"],
-        p["poisson_ratio_bulk"],
-        p["layer_thickness"],
+        young_modulus_layer=p["young_modulus_layer"],
+        young_modulus_bulk=p["young_modulus_bulk"],
+        poisson_ratio_layer=p["poisson_ratio_layer"],
+        poisson_ratio_bulk=p["poisson_ratio_bulk"],
+        layer_thickness=p["layer_thickness"],
     )
-    return relative_contact_area(p["nominal_pressure"], stress_variance(spectrum, skin), area_correction)
+    return relative_contact_area(
+        p["nominal_pressure"], twice_stress_variance(spectrum, skin), area_correction=area_correction
+    )
 
 
 def one_by_quad(

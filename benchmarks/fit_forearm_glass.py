@@ -41,7 +41,7 @@ SHEAR_RANGE = (0.5e6, 500e6)
 HURST, LOW, ROLLOFF, HIGH = 0.78, 1e3, 6.345e3, 1e9
 
 
-def stress_variance(
+def twice_stress_variance(
     modulus: float, bulk: float, thickness: float, height: float, tuned: bool = True
 ) -> float:
     """Eq. 3 times 4 p0², with the layer of Eq. 4, both for incompressible skin, by scipy.integrate.quad."""
@@ -75,11 +75,11 @@ def stress_variance(
     return pi * quad(integrand, log(LOW), log(HIGH), limit=200, points=[log(ROLLOFF)], **options)[0]
 
 
-def relative_area(pressure: float, variance: float, yield_stress: float) -> float:
+def relative_area(pressure: float, twice_variance: float, yield_stress: float) -> float:
     """Elastic and plastic contact area of plain theory (Fourier series; erf if purely elastic)."""
     if yield_stress == inf:
-        return erf(pressure / sqrt(variance))
-    ratio, spread = pressure / yield_stress, sqrt(variance) / yield_stress
+        return erf(pressure / sqrt(twice_variance))
+    ratio, spread = pressure / yield_stress, sqrt(twice_variance) / yield_stress
     total, n = ratio, 1
     while True:
         decay = exp(-((n * pi * spread) ** 2) / 4) / n * np.sin(n * pi * ratio)
@@ -100,7 +100,7 @@ def log_probability(position: np.ndarray, tuned: bool = True) -> float:
     reduced = bulk / 0.75
     pressure = LOAD / (pi * (3 * LOAD * RADIUS / (4 * reduced)) ** (2 / 3))
     for state, modulus, limit in (("dry", dry, yield_stress), ("wet", wet, inf)):
-        area = relative_area(pressure, stress_variance(modulus, bulk, thickness, height, tuned), limit)
+        area = relative_area(pressure, twice_stress_variance(modulus, bulk, thickness, height, tuned), limit)
         friction = shear * area / pressure
         if not friction > 0:
             return -inf

@@ -30,8 +30,10 @@ TUNED = [(vector, pressure) for vector in range(0, 64, 4) for pressure in range(
 
 def batch(p: dict[str, np.ndarray]) -> tuple[SelfAffineSpectrum, LayeredSkin]:
     """Surface and skin of all vectors."""
-    values = list(p.values())
-    return SelfAffineSpectrum(*values[:5]), LayeredSkin(*values[5:10])
+    surface, skin = (
+        {name: p[name] for name in kind.__dataclass_fields__} for kind in (SelfAffineSpectrum, LayeredSkin)
+    )
+    return SelfAffineSpectrum(**surface), LayeredSkin(**skin)
 
 
 class OneVector:
@@ -65,14 +67,14 @@ class OneVector:
     def separation(
         self,
         pressure: float,
-        variance: Callable[[float], float],
+        twice_variance: Callable[[float], float],
         inner: Callable[[float], float],
         tolerance: float,
     ) -> float:
         """ū by an integral over ln q, split at the roll-off."""
 
         def integrand(t: float) -> float:
-            w = 1 / sqrt(max(variance(t), 1e-300))
+            w = 1 / sqrt(max(twice_variance(t), 1e-300))
             if w * pressure > 20:
                 return 0.0
             power, modulus = self.parts(t)
@@ -89,7 +91,7 @@ def one_plainly(vector: OneVector, pressure: float) -> float:
     """ū with quad for everything."""
     first, knee, _ = vector.ends
 
-    def variance(t: float) -> float:
+    def twice_variance(t: float) -> float:
         pieces = ((first, min(t, knee)), (knee, t))
         return sum(quad(vector.stress, a, b, epsabs=0, epsrel=1e-9)[0] for a, b in pieces if b > a)
 
@@ -97,7 +99,7 @@ def one_plainly(vector: OneVector, pressure: float) -> float:
         erf_part = quad(lambda t: erf(t) ** 2 * exp(-t * t) / t, x, inf, epsrel=1e-9)[0]
         return GAMMA * exp1(x * x) / 2 + 3 * (1 - GAMMA) * erf_part
 
-    return vector.separation(pressure, variance, inner, 1e-7)
+    return vector.separation(pressure, twice_variance, inner, 1e-7)
 
 
 def inner_table() -> Callable[[float], float]:
@@ -127,7 +129,7 @@ def run() -> dict[str, float]:
     p = parameter_vectors()
     surface, skin = batch(p)
     vectors = [OneVector({name: float(values[i]) for name, values in p.items()}) for i in range(COUNT)]
-    found = mean_separation(PRESSURES, surface, skin)
+    found = mean_separation(PRESSURES, surface, skin=skin)
     start = time.process_time()
     exact = np.array([one_plainly(vectors[i], float(PRESSURES[k])) for i, k in PLAIN])
     plain = (time.process_time() - start) / len(PLAIN)
@@ -136,9 +138,9 @@ def run() -> dict[str, float]:
     rows = sorted({i for i, _ in TUNED})
     tuned_values = np.array([one_vector_tuned(vectors[i], PRESSURES.tolist(), inner) for i in rows])
     tuned = (time.process_time() - start) / len(TUNED)
-    ours = best_time(lambda: mean_separation(PRESSURES, surface, skin), 200)
-    inverse = best_time(lambda: pressure_at_separation(found, surface, skin), 20)
-    gaps = best_time(lambda: gap_distribution(PRESSURES, surface, skin), 5)
+    ours = best_time(lambda: mean_separation(PRESSURES, surface, skin=skin), 200)
+    inverse = best_time(lambda: pressure_at_separation(found, surface, skin=skin), 20)
+    gaps = best_time(lambda: gap_distribution(PRESSURES, surface, skin=skin), 5)
     ours_per_value = ours / found.size
     return {
         "values": found.size,

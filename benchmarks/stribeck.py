@@ -119,7 +119,7 @@ def plain_film(
 def plain_curve(products: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Friction coefficient at speeds times viscosity in N/m, and where a film was found."""
     radius, load, modulus, skin, surface = case()
-    line = line_contact(load, radius, modulus)
+    line = line_contact(load, radius, reduced_modulus=modulus)
     height, slope = float(line.half_width**2 / radius), float(line.half_width / radius)
     law = asperity_law(surface, skin).scaled(height, float(line.maximum_pressure))
     numbers = 6 * products * radius**2 / float(line.half_width**3 * line.maximum_pressure)
@@ -160,9 +160,9 @@ def fast_curve(products: np.ndarray, nodes: int) -> np.ndarray:
 
 def case() -> tuple[float, float, float, LayeredSkin, PowerSpectrum]:
     """Cylinder radius (m), load per length (N/m) and modulus (Pa) of Fig. 13 of the paper, with its skin and surface."""
-    skin = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     modulus = float(reduced_modulus(20e3, 0.5))
-    radius, load = cylinder_of_sphere(0.2, 8e-3, modulus)
+    load, radius = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=modulus)
     return float(radius), float(load), modulus, skin, named_surface("paper_reference")
 
 
@@ -206,18 +206,16 @@ def direct_friction(parameters: dict[str, float], products: np.ndarray, nodes: i
     """Friction coefficient of one parameter vector with the direct solver."""
     shape = named_surface("paper_reference")
     surface = SelfAffineSpectrum(
-        parameters["rms_height"],
-        shape.hurst_exponent,
-        shape.wavevector_min,
-        shape.wavevector_rolloff,
-        shape.wavevector_max,
+        rms_height=parameters["rms_height"],
+        hurst_exponent=shape.hurst_exponent,
+        wavevector_min=shape.wavevector_min,
+        wavevector_rolloff=shape.wavevector_rolloff,
+        wavevector_max=shape.wavevector_max,
     )
     skin = LayeredSkin(
-        parameters["young_modulus_layer"],
-        parameters["young_modulus_bulk"],
-        0.5,
-        0.5,
-        parameters["layer_thickness"],
+        young_modulus_layer=parameters["young_modulus_layer"],
+        young_modulus_bulk=parameters["young_modulus_bulk"],
+        layer_thickness=parameters["layer_thickness"],
     )
     curve = stribeck_curve(
         products,
@@ -248,9 +246,19 @@ def run_table() -> dict[str, float]:
         "table_held_out_worst": float(table.held_out[2]),
     }
     parameters = draw(VECTORS)
-    seconds = best_time(lambda: tabulated_friction(table, POINTS, parameters, SHEAR_STRESS), 20) / VECTORS
+    seconds = (
+        best_time(
+            lambda: tabulated_friction(
+                table, POINTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+            ),
+            20,
+        )
+        / VECTORS
+    )
     times, errors = [], []
-    tabulated = tabulated_friction(table, POINTS, parameters, SHEAR_STRESS).friction_coefficient
+    tabulated = tabulated_friction(
+        table, POINTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+    ).friction_coefficient
     for place in range(COMPARED):
         one = vector(parameters, place)
         times.append(best_time(lambda one=one: direct_friction(one, POINTS), 1))
@@ -280,10 +288,20 @@ def run_liquids(table: FilmTable) -> dict[str, float]:
     speed = np.asarray(data["sliding_speed"], dtype=float)
     parameters = draw(128) | {"normal_force": np.asarray(data["normal_force"], dtype=float)[None]}
     seconds = best_time(
-        lambda: tabulated_friction_of_liquids(table, speed, rows, parameters, SHEAR_STRESS), 20
+        lambda: tabulated_friction_of_liquids(
+            table, speed, liquids=rows, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+        ),
+        20,
     )
-    plain = best_time(lambda: tabulated_friction(table, 0.1 * speed, parameters, SHEAR_STRESS), 20)
-    friction, viscosity = tabulated_friction_of_liquids(table, speed, rows, parameters, SHEAR_STRESS)
+    plain = best_time(
+        lambda: tabulated_friction(
+            table, 0.1 * speed, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+        ),
+        20,
+    )
+    friction, viscosity = tabulated_friction_of_liquids(
+        table, speed, liquids=rows, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+    )
     start, errors = time.perf_counter(), []
     for column in range(speed.size):
         product = np.array([viscosity.viscosity[0, column] * speed[column]])

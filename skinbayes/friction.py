@@ -8,19 +8,19 @@ from skinbayes.arrays import ArrayLike, FloatArray
 
 
 def friction_coefficient(
-    frictional_shear_stress: ArrayLike, relative_contact_area: ArrayLike, nominal_pressure: ArrayLike
+    frictional_shear_stress: ArrayLike, relative_contact_area: ArrayLike, *, nominal_pressure: ArrayLike
 ) -> FloatArray:
     """Friction coefficient at a constant frictional shear stress, ``μ = σ_f A/(A0 p0)`` (Sect. 4 of the paper).
 
     Parameters
     ----------
-    frictional_shear_stress : σ_f, Pa, any shape
-    relative_contact_area : A/A0, dimensionless, broadcasts
+    frictional_shear_stress : σ_f, Pa, ≥ 0, any shape
+    relative_contact_area : A/A0, dimensionless, ≥ 0, broadcasts
     nominal_pressure : p0, Pa, > 0, broadcasts
 
     Returns
     -------
-    friction_coefficient : μ, dimensionless, broadcast shape; nan or inf where p0 = 0
+    friction_coefficient : μ, dimensionless, broadcast shape; nan where an argument is impossible
 
     Notes
     -----
@@ -33,7 +33,7 @@ def friction_coefficient(
 
     Examples
     --------
-    >>> print(f"{friction_coefficient(15e6, 6.48133e-4, 6830.0):.4f}")
+    >>> print(f"{friction_coefficient(15e6, 6.48133e-4, nominal_pressure=6830.0):.4f}")
     1.4234
     """
     shear, area, pressure = (
@@ -41,4 +41,5 @@ def friction_coefficient(
         for x in (frictional_shear_stress, relative_contact_area, nominal_pressure)
     )
     with np.errstate(all="ignore"):
-        return np.asarray(shear * area / pressure)[()]
+        possible = (shear >= 0) & (area >= 0) & (pressure > 0)
+        return np.where(possible, shear * area / pressure, np.nan)[()]

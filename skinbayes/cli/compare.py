@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 )
 @json_option
 def compare(runs: tuple[str, ...], refit: bool, as_json: bool) -> None:
-    """Compare models by what they predict for data left out; runs on different data are refused.
+    """Compare models by what they predict for data left out.
+
+    Runs on different data are refused.
 
     Single data are left out one at a time (PSIS-LOO), and where the data have grouping columns all data of one person, or one
     liquid.

@@ -63,7 +63,7 @@ def digitised(
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    """Turn points digitised with WebPlotDigitizer into a data set with reading errors.
+    """Turn points digitised with WebPlotDigitizer into a data set.
 
     FILE is a project (JSON or tar) or a CSV export. Alone, its data sets are listed. A project holds the calibration of
     the axes, from which the reading errors follow; for a CSV state them.

@@ -66,7 +66,10 @@ def fit(
     with_report: bool,
     as_json: bool,
 ) -> int:
-    """Sample the posterior until autocorrelation, effective sample size and R-hat agree that it is enough."""
+    """Sample the posterior until it has converged.
+
+    It has when autocorrelation, effective sample size and R-hat agree that enough has been sampled.
+    """
     from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
     from skinbayes.problem import load_problem

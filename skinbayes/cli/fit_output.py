@@ -33,6 +33,7 @@ def print_fit(result: Fit, directory: Path, page: Path | None) -> None:
 
 def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
     """Rows of the table, and the derived quantities that are left to the file because they differ over many rows."""
+    from skinbayes.report.words import sample_size
     from skinbayes.units import format_quantity
 
     free = result.summary()
@@ -45,6 +46,7 @@ def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
         if label not in free.index and label.partition("[")[0] in crowded:
             continue
         values = [format_quantity(row[key], row["unit"]) for key in ("median", "q05", "q95")]
-        convergence = [f"{row['ess_bulk']:.0f}", f"{row['r_hat']:.3f}"] if label in free.index else ["", ""]
+        known = label in free.index
+        convergence = [sample_size(row["ess_bulk"]), f"{row['r_hat']:.3f}"] if known else ["", ""]
         rows.append([label, *values, *convergence])
     return rows, crowded

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from skinbayes.atomic import write_atomically
 from skinbayes.cli.new_file import refuse_existing, write_text
 from skinbayes.cli.output import json_option, print_json, say
 from skinbayes.errors import InputError
@@ -27,12 +28,12 @@ def new(model: str, output: str, data: str | None, overwrite: bool, as_json: boo
         raise InputError(f"--output: found {output[:80]!r}; expected a file that ends in .toml")
     refuse_existing([target], overwrite)
     copy = copy_model(model, target, data)
-    before = target.read_text(encoding="utf-8") if target.exists() else None
+    before = target.read_bytes() if target.exists() else None
     write_text(target, copy.text)
     try:
         spec = load_model(target)
     except InputError:  # such as a file called as one of its yardsticks
-        target.unlink() if before is None else write_text(target, before)
+        target.unlink() if before is None else write_atomically(target, before)
         raise
     if as_json:
         print_json({"model": model, "file": output, "data": data, "changes": list(copy.changes)})

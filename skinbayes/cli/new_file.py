@@ -10,8 +10,10 @@ from skinbayes.errors import InputError
 
 
 def refuse_existing(paths: Sequence[Path], overwrite: bool) -> None:
-    """InputError for the first path that exists, unless the user said that it may be overwritten."""
+    """InputError for the first path that exists, unless it is an ordinary file that the user said may be overwritten."""
     for path in paths:
+        if path.exists() and not path.is_file():
+            raise InputError(f"{path}: exists and is no ordinary file; choose another name")
         if (path.exists() or path.is_symlink()) and not overwrite:
             raise InputError(f"{path}: exists already; choose another name, or add --overwrite")
 

@@ -20,7 +20,9 @@ def refuse_other_files(page: Path) -> None:
     """InputError if something else than a page of skinbayes stands where a page is to be written."""
     if page.is_dir():
         raise InputError(f"{page}: a folder; expected the name of a page to write, such as report.html")
-    if page.is_file():
+    if (
+        page.is_file() and page.stat().st_size
+    ):  # without a size it holds nothing, or is of those that never end
         with page.open("rb") as file:
             if MARK in file.read(1000):
                 return

@@ -35,7 +35,9 @@ MOST_ROWS = 200
 @click.option("--conditions", metavar="FILE.csv", help="Rows to predict instead of the model's own.")
 @json_option
 def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json: bool) -> int:
-    """Evaluate the forward model at given parameters; free ones that are not set stand at their prior median.
+    """Evaluate the forward model at given parameters.
+
+    Free parameters that are not set stand at their prior median.
 
     A row without a prediction is empty (null in JSON), named on standard error with the reason, and makes the exit status 2.
     """

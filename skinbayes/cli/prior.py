@@ -23,7 +23,7 @@ MOST_ROWS = 200
 )
 @json_option
 def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) -> None:
-    """Compare the prior predictive distribution with the data, row by row."""
+    """Compare what the priors predict with the data, row by row."""
     from skinbayes.problem import load_problem
     from skinbayes.problem.prior_predictive import prior_predictive
     from skinbayes.units import format_quantity

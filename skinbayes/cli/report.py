@@ -21,7 +21,10 @@ from skinbayes.cli.output import json_option, print_json, say
 )
 @json_option
 def report(run: str, output: str | None, no_yardsticks: bool, as_json: bool) -> None:
-    """Write one self-contained HTML page: what was learnt and what was not, with figures."""
+    """Write one HTML page: what was learnt and what was not.
+
+    The page is one file that needs no other, figures included.
+    """
     from skinbayes.cli.page import write_page
     from skinbayes.fit import load_fit
     from skinbayes.report import digest

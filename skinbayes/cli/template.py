@@ -16,9 +16,9 @@ from skinbayes.cli.output import json_option, print_json, say
 @click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
 @json_option
 def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> None:
-    """Write the header of a CSV with the columns that the data of a model need, and no rows.
+    """Write the header of a CSV that the data of a model need.
 
-    What each column means is said on standard error.
+    It has no rows. What each column means is said on standard error.
     """
     from skinbayes.problem.template import data_template
 

@@ -1,7 +1,7 @@
 """Contact mechanics of skin: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
-from skinbayes.contact.correction import AREA_CORRECTION, corrected_stress_variance
+from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
 from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area, total_contact_area
 from skinbayes.contact.elliptic_contact import (
     EllipseFactors,
@@ -28,7 +28,7 @@ from skinbayes.contact.line_contact import (
 )
 from skinbayes.contact.separation import mean_separation
 from skinbayes.contact.separation_inverse import pressure_at_separation
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
 
 __all__ = [
     "AREA_CORRECTION",
@@ -40,7 +40,7 @@ __all__ = [
     "HertzLine",
     "HertzSphere",
     "LayeredSkin",
-    "corrected_stress_variance",
+    "corrected_twice_stress_variance",
     "cylinder_of_contact",
     "cylinder_of_ellipse",
     "cylinder_of_sphere",
@@ -56,8 +56,8 @@ __all__ = [
     "reduced_modulus",
     "relative_contact_area",
     "sphere_contact",
-    "stress_variance",
     "surface_response",
     "total_contact_area",
+    "twice_stress_variance",
     "validate_skin",
 ]

@@ -6,16 +6,16 @@ import numpy as np
 from scipy.special import erf
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.contact.correction import AREA_CORRECTION, corrected_stress_variance
+from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
 
 
-def persson_contact_area(nominal_pressure: ArrayLike, variance: ArrayLike) -> FloatArray:
+def persson_contact_area(nominal_pressure: ArrayLike, twice_stress_variance: ArrayLike) -> FloatArray:
     """Relative contact area of Persson's theory, ``A/A0 = erf(p0/√V)`` (Eq. 2 of the paper, G = V/(4 p0²)).
 
     Parameters
     ----------
     nominal_pressure : p0, Pa, ≥ 0, any shape
-    variance : V of `stress_variance`, Pa², ≥ 0, broadcasts
+    twice_stress_variance : V of `twice_stress_variance`, Pa², ≥ 0, broadcasts
 
     Returns
     -------
@@ -31,7 +31,10 @@ def persson_contact_area(nominal_pressure: ArrayLike, variance: ArrayLike) -> Fl
     >>> print(f"{persson_contact_area(6830.0, 3.36644e14):.5e}")
     4.20040e-04
     """
-    pressure, width = np.asarray(nominal_pressure, dtype=np.float64), np.asarray(variance, dtype=np.float64)
+    pressure, width = (
+        np.asarray(nominal_pressure, dtype=np.float64),
+        np.asarray(twice_stress_variance, dtype=np.float64),
+    )
     with np.errstate(all="ignore"):
         pressure = np.where(pressure >= 0, pressure, np.nan)
         return np.asarray(erf(without_load(pressure / np.sqrt(width), pressure, width)))[()]
@@ -45,14 +48,17 @@ def without_load(reach: FloatArray, pressure: FloatArray, width: FloatArray) -> 
 
 
 def relative_contact_area(
-    nominal_pressure: ArrayLike, variance: ArrayLike, area_correction: ArrayLike = AREA_CORRECTION
+    nominal_pressure: ArrayLike,
+    twice_stress_variance: ArrayLike,
+    *,
+    area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
     """Relative contact area with the Yang–Persson correction, ``A/A0 = erf(p0/√V_eff)`` (after Eq. 2 of the paper).
 
     Parameters
     ----------
     nominal_pressure : p0, Pa, ≥ 0, any shape
-    variance : V of `stress_variance`, Pa², ≥ 0, broadcasts
+    twice_stress_variance : V of `twice_stress_variance`, Pa², ≥ 0, broadcasts
     area_correction : γ, dimensionless, 0 < γ ≤ 1, broadcasts; 1 is plain Persson theory
 
     Returns
@@ -73,5 +79,7 @@ def relative_contact_area(
     >>> print(f"{relative_contact_area(6830.0, 3.36644e14):.5e}")
     6.48133e-04
     """
-    effective = corrected_stress_variance(nominal_pressure, variance, area_correction)
+    effective = corrected_twice_stress_variance(
+        nominal_pressure, twice_stress_variance, area_correction=area_correction
+    )
     return persson_contact_area(nominal_pressure, effective)

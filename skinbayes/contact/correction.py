@@ -1,4 +1,4 @@
-"""Yang–Persson correction of the stress variance.
+"""Yang–Persson correction of the width of the stress distribution.
 
 Persson's diffusion equation spreads the stress as if contact were complete. The correction lets every step of
 wavevector act with a weight between γ and 1 that depends on the contact area reached:
@@ -65,10 +65,13 @@ def _single_table(gamma: float) -> _Table:
     return _table(np.array([gamma]))
 
 
-def corrected_stress_variance(
-    nominal_pressure: ArrayLike, variance: ArrayLike, area_correction: ArrayLike = AREA_CORRECTION
+def corrected_twice_stress_variance(
+    nominal_pressure: ArrayLike,
+    twice_stress_variance: ArrayLike,
+    *,
+    area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
-    """Stress variance V_eff with the Yang–Persson correction, to be used in place of V in Eq. 2 of the paper.
+    """Twice the stress variance, V_eff, with the Yang–Persson correction, to be used in place of V in Eq. 2 of the paper.
 
     Solves ``V/p0² = ∫_0^(V_eff/p0²) dy/[γ + (1 − γ) erf²(1/√y)]``. V_eff = V while contact is complete, V_eff
     → γV when it is small.
@@ -76,12 +79,12 @@ def corrected_stress_variance(
     Parameters
     ----------
     nominal_pressure : p0, Pa, ≥ 0, any shape
-    variance : V of `stress_variance`, Pa², ≥ 0, broadcasts
+    twice_stress_variance : V of `twice_stress_variance`, Pa², ≥ 0, broadcasts
     area_correction : γ, dimensionless, 0 < γ ≤ 1, broadcasts; 1 gives V itself
 
     Returns
     -------
-    corrected_variance : Pa², broadcast shape; nan where an argument is impossible
+    corrected_twice_stress_variance : Pa², broadcast shape; nan where an argument is impossible
 
     Notes
     -----
@@ -95,11 +98,11 @@ def corrected_stress_variance(
 
     Examples
     --------
-    >>> print(f"{corrected_stress_variance(6830.0, 3.36644e14):.5e}")
+    >>> print(f"{corrected_twice_stress_variance(6830.0, 3.36644e14):.5e}")
     1.41392e+14
     """
     pressure, width, gamma = (
-        np.asarray(x, dtype=np.float64) for x in (nominal_pressure, variance, area_correction)
+        np.asarray(x, dtype=np.float64) for x in (nominal_pressure, twice_stress_variance, area_correction)
     )
     with np.errstate(all="ignore"):
         ratio = width / np.square(np.where(pressure >= 0, pressure, np.nan))

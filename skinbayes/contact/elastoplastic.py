@@ -9,7 +9,7 @@ from scipy.special import erf, erfc
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.area import without_load
-from skinbayes.contact.correction import AREA_CORRECTION, corrected_stress_variance
+from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
 from skinbayes.roughness._rules import gauss_unit
 
 _SWITCH = 0.75  # √V/σ_Y from which the Fourier series is used instead of the image sources
@@ -51,7 +51,8 @@ class ContactArea(NamedTuple):
 
 def elastoplastic_contact_area(
     nominal_pressure: ArrayLike,
-    variance: ArrayLike,
+    twice_stress_variance: ArrayLike,
+    *,
     yield_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
 ) -> ContactArea:
@@ -67,10 +68,10 @@ def elastoplastic_contact_area(
     Parameters
     ----------
     nominal_pressure : p0, Pa, ≥ 0, any shape
-    variance : V of `stress_variance`, Pa², ≥ 0, broadcasts
+    twice_stress_variance : V of `twice_stress_variance`, Pa², ≥ 0, broadcasts
     yield_stress : σ_Y, Pa, > 0, broadcasts; inf is purely elastic. A nominal pressure that reaches σ_Y gives
         full plastic contact, A_pl = A0: the body cannot carry more (and then σ_Y A0 falls short of the load).
-    area_correction : γ of `corrected_stress_variance`, dimensionless, 0 < γ ≤ 1, broadcasts; 1 is plain
+    area_correction : γ of `corrected_twice_stress_variance`, dimensionless, 0 < γ ≤ 1, broadcasts; 1 is plain
         theory, which is what the paper has. The corrected V_eff(p0) is that of the elastic problem, so that
         both agree as σ_Y → inf.
 
@@ -90,11 +91,13 @@ def elastoplastic_contact_area(
 
     Examples
     --------
-    >>> dry = elastoplastic_contact_area(6830.0, 6.87e18, 50e6)
+    >>> dry = elastoplastic_contact_area(6830.0, 6.87e18, yield_stress=50e6)
     >>> print(f"{dry.total:.4e} {dry.plastic_share:.4f}")
     1.3660e-04 1.0000
     """
-    ratio, spread, reach, shape = _dimensionless(nominal_pressure, variance, yield_stress, area_correction)
+    ratio, spread, reach, shape = _dimensionless(
+        nominal_pressure, twice_stress_variance, yield_stress, area_correction
+    )
     with np.errstate(all="ignore"):
         elastic, plastic, non_contact = np.full((3, ratio.size), np.nan)
         yielded = (ratio >= 1) & ~np.isnan(spread)
@@ -118,7 +121,8 @@ def elastoplastic_contact_area(
 
 def total_contact_area(
     nominal_pressure: ArrayLike,
-    variance: ArrayLike,
+    twice_stress_variance: ArrayLike,
+    *,
     yield_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
@@ -130,9 +134,9 @@ def total_contact_area(
     Parameters
     ----------
     nominal_pressure : p0, Pa, ≥ 0, any shape
-    variance : V of `stress_variance`, Pa², ≥ 0, broadcasts
+    twice_stress_variance : V of `twice_stress_variance`, Pa², ≥ 0, broadcasts
     yield_stress : σ_Y, Pa, > 0, broadcasts; inf is purely elastic
-    area_correction : γ of `corrected_stress_variance`, dimensionless, 0 < γ ≤ 1, broadcasts
+    area_correction : γ of `corrected_twice_stress_variance`, dimensionless, 0 < γ ≤ 1, broadcasts
 
     Returns
     -------
@@ -148,10 +152,13 @@ def total_contact_area(
 
     Examples
     --------
-    >>> print(f"{total_contact_area(6830.0, 6.87e18, 50e6):.4e} {total_contact_area(6830.0, 3.366e14, 50e6):.4e}")
+    >>> dry, wet = total_contact_area(6830.0, [6.87e18, 3.366e14], yield_stress=50e6)
+    >>> print(f"{dry:.4e} {wet:.4e}")
     1.3660e-04 6.4817e-04
     """
-    ratio, spread, reach, shape = _dimensionless(nominal_pressure, variance, yield_stress, area_correction)
+    ratio, spread, reach, shape = _dimensionless(
+        nominal_pressure, twice_stress_variance, yield_stress, area_correction
+    )
     with np.errstate(all="ignore"):
         total = np.where(ratio >= 1, 1.0, erf(reach))
         total[np.isnan(ratio + spread)] = np.nan
@@ -168,13 +175,16 @@ def total_contact_area(
 
 
 def _dimensionless(
-    nominal_pressure: ArrayLike, variance: ArrayLike, yield_stress: ArrayLike, area_correction: ArrayLike
+    nominal_pressure: ArrayLike,
+    twice_stress_variance: ArrayLike,
+    yield_stress: ArrayLike,
+    area_correction: ArrayLike,
 ) -> tuple[FloatArray, FloatArray, FloatArray, tuple[int, ...]]:
     """p0/σ_Y, √V_eff/σ_Y and p0/√V_eff, dimensionless, flat, and the shape they had."""
     pressure, width, limit = (
-        np.asarray(x, dtype=np.float64) for x in (nominal_pressure, variance, yield_stress)
+        np.asarray(x, dtype=np.float64) for x in (nominal_pressure, twice_stress_variance, yield_stress)
     )
-    effective = corrected_stress_variance(pressure, width, area_correction)
+    effective = corrected_twice_stress_variance(pressure, width, area_correction=area_correction)
     with np.errstate(all="ignore"):
         limit = np.where(limit > 0, limit, np.nan)
         root = np.sqrt(effective)

@@ -96,6 +96,7 @@ def ellipse_factors(axis_ratio: ArrayLike) -> EllipseFactors:
 def elliptic_contact(
     normal_force: ArrayLike,
     radius_along: ArrayLike,
+    *,
     radius_across: ArrayLike,
     reduced_modulus: ArrayLike,
 ) -> HertzEllipse:
@@ -121,14 +122,14 @@ def elliptic_contact(
 
     Examples
     --------
-    >>> contact = elliptic_contact(0.2, 8e-3, 16e-3, 20e3 / 0.75)
+    >>> contact = elliptic_contact(0.2, 8e-3, radius_across=16e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{contact.semi_axis_along:.4e} m, {contact.semi_axis_across:.4e} m")
     3.1496e-03 m, 4.9947e-03 m
     """
     along, across = (np.asarray(x, dtype=np.float64) for x in (radius_along, radius_across))
     with np.errstate(all="ignore"):
         along, across = np.where(along > 0, along, np.nan), np.where(across > 0, across, np.nan)
-        circle = sphere_contact(normal_force, np.sqrt(along * across), reduced_modulus)
+        circle = sphere_contact(normal_force, np.sqrt(along * across), reduced_modulus=reduced_modulus)
         ratio = _axis_ratio(np.maximum(along, across) / np.minimum(along, across))
         factors = ellipse_factors(ratio)
         mean = circle.mean_pressure / np.square(factors.size)
@@ -163,6 +164,7 @@ def _log_radius_ratio(log_axis_ratio: FloatArray) -> FloatArray:
 def cylinder_of_ellipse(
     normal_force: ArrayLike,
     radius_along: ArrayLike,
+    *,
     radius_across: ArrayLike,
     reduced_modulus: ArrayLike,
 ) -> EquivalentCylinder:
@@ -193,12 +195,14 @@ def cylinder_of_ellipse(
 
     Examples
     --------
-    >>> cylinder = cylinder_of_ellipse(0.2, 8e-3, 16e-3, 20e3 / 0.75)
+    >>> cylinder = cylinder_of_ellipse(0.2, 8e-3, radius_across=16e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     5.970e-03 m, 18.67 N/m
     """
-    contact = elliptic_contact(normal_force, radius_along, radius_across, reduced_modulus)
+    contact = elliptic_contact(
+        normal_force, radius_along, radius_across=radius_across, reduced_modulus=reduced_modulus
+    )
     with np.errstate(all="ignore"):
         possible = np.asarray(radius_across) >= np.asarray(radius_along)
         radius = np.where(possible, contact.effective_radius, np.nan)
-    return cylinder_of_contact(radius, contact.mean_pressure, reduced_modulus)
+    return cylinder_of_contact(contact.mean_pressure, radius, reduced_modulus=reduced_modulus)

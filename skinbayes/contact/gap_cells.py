@@ -94,12 +94,16 @@ def resolve_gaps(
     parts = [_PLATEAU, _FRACTAL] if isinstance(spectrum, SelfAffineSpectrum) else [_WHOLE]
     band = resolve(spectrum, skin, _PLACES)
     q = join(with_axes(spectrum.wavevector_min, 1), band.wavevector)
-    variance = join(np.zeros(1), band.variance)
+    twice_variance = join(np.zeros(1), band.twice_variance)
     mean_square = _mean_square_above(spectrum, q)
     gamma = with_axes(area_correction, 1)
-    area = relative_contact_area(pressure[..., None], variance[..., None, :], with_axes(gamma, 1))
+    area = relative_contact_area(
+        pressure[..., None], twice_variance[..., None, :], area_correction=with_axes(gamma, 1)
+    )
     area[..., 0] = 1 + 0 * area[..., 0]  # V = 0
-    at_edges = _separation(pressure, area, variance, 1 / (q * effective_modulus(skin, q)), area_correction)
+    at_edges = _separation(
+        pressure, area, twice_variance, 1 / (q * effective_modulus(skin, q)), area_correction
+    )
     # ū(ζ)/h_rms(ζ) varies slowly until it falls to 0 at the end
     height = np.sqrt(mean_square)[..., None, :]
     above = height[..., :-1:2]
@@ -114,23 +118,25 @@ def resolve_gaps(
 def _separation(
     pressure: FloatArray,
     area: FloatArray,
-    variance: FloatArray,
+    twice_variance: FloatArray,
     compliance: FloatArray,
     area_correction: FloatArray,
 ) -> FloatArray:
     """ū at all edges but the last, shape ``(..., K, N)``."""
-    cells = variance.shape[-1] // 2
+    cells = twice_variance.shape[-1] // 2
     pairs = _pairs(cells)
     batch = area.shape[:-2]
-    variance = as_rows(variance, batch)
+    twice_variance = as_rows(twice_variance, batch)
     weight = _weights(as_rows(compliance, batch), cells, pairs)
-    above = np.maximum(variance[:, pairs.node] - variance[:, pairs.edge], 1e-300)
+    above = np.maximum(twice_variance[:, pairs.node] - twice_variance[:, pairs.edge], 1e-300)
     weight *= np.sqrt(above / np.pi)
     log_above, inverse = np.log(above), 1 / above
     closing = closing_function(
         as_rows(area_correction[..., None], batch)[:, 0] if area_correction.ndim else area_correction
     )
-    local = np.log(pressure[..., None] / area[..., :-1:2]).reshape(len(variance), pressure.shape[-1], cells)
+    local = np.log(pressure[..., None] / area[..., :-1:2]).reshape(
+        len(twice_variance), pressure.shape[-1], cells
+    )
     found = np.empty(local.shape)
     for rows, columns in blocks(len(local), local.shape[1], pairs.node.size):
         part = 2 * np.take(local[rows, columns], pairs.cell, axis=-1)

@@ -27,7 +27,7 @@ _SHARPNESS = 4  # of the bend towards the cap
 _NARROWEST = 1e-300  # m
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class GapDistribution:
     """Distribution of the gap u between rough solid and countersurface over the nominal area.
 
@@ -48,7 +48,8 @@ class GapDistribution:
 
     Examples
     --------
-    >>> one_asperity = GapDistribution(*map(np.array, (1e-6, 0.1, [1e-6 / 0.9], [1e-9], [0.9])))
+    >>> one_asperity = GapDistribution(mean=np.array(1e-6), contact_fraction=np.array(0.1),
+    ...     location=np.array([1e-6 / 0.9]), width=np.array([1e-9]), weight=np.array([0.9]))
     >>> print(f"{one_asperity.cumulative(1e-6):.2f} {one_asperity.cumulative(2e-6):.2f}")
     0.10 1.00
     """
@@ -137,6 +138,7 @@ def _volume(gap: FloatArray | float, location: FloatArray, spread: FloatArray) -
 def gap_distribution(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
+    *,
     skin: LayeredSkin,
     area_correction: ArrayLike = AREA_CORRECTION,
     closure: Literal["gaussian", "sharp"] = "gaussian",
@@ -145,7 +147,7 @@ def gap_distribution(
 
     As the magnification ζ grows, area that looked like contact opens: between ζ and ζ + dζ the share −A′(ζ)dζ. Its mean
     gap follows from the separation of what still touches, ``u₁ = d(A ū)/dA``, taken as Δ(A ū)/ΔA between
-    nodes. ū(ζ) is `mean_separation` under the pressure p/A(ζ) with the stress variance V(q) − V(ζ) of what is
+    nodes. ū(ζ) is `mean_separation` under the pressure p/A(ζ) with twice the stress variance, V(q) − V(ζ) of what is
     smaller. About u₁ the gap scatters with the roughness above ζ, so that
 
     ``P(u) = (A/A0) δ(u) + ∫ (−A′) [N(u − u₁) + N(u + u₁)] dζ``, N of variance ``2π ∫_{ζ q0}^{q1} q C dq``.
@@ -191,8 +193,8 @@ def gap_distribution(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> gaps = gap_distribution(6830.0, named_surface("paper_reference"), wet)
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> gaps = gap_distribution(6830.0, named_surface("paper_reference"), skin=wet)
     >>> print(f"{gaps.cumulative(10e-6):.4f} {gaps.film(10e-6):.3e} {gaps.mean:.4e}")
     0.3423 2.076e-06 1.3524e-05
     """
@@ -202,7 +204,7 @@ def gap_distribution(
     gamma = np.asarray(area_correction, dtype=np.float64)
     with np.errstate(all="ignore"):
         possible = np.atleast_1d(np.where(pressure > 0, pressure, np.nan))
-        mean = mean_separation(possible, spectrum, skin, gamma)
+        mean = mean_separation(possible, spectrum, skin=skin, area_correction=gamma)
         cells = resolve_gaps(possible, spectrum, skin, gamma)
         weight = -np.diff(cells.area)
         volume = -np.diff(cells.area * cells.separation) / np.maximum(mean, 1e-300)[..., None]
@@ -217,10 +219,19 @@ def gap_distribution(
         width = np.maximum(np.broadcast_to(width, location.shape), _NARROWEST)
         own = _volume(np.inf, location, np.sqrt(2) * width)
         scale = (mean / np.maximum((weight * own).sum(axis=-1), 1e-300))[..., None]
-        fields = [mean, cells.area[..., -1], scale * location, np.maximum(scale * width, _NARROWEST), weight]
-        if not pressure.ndim:
-            fields = [fields[0][..., 0], fields[1][..., 0], *(x[..., 0, :] for x in fields[2:])]
-        return GapDistribution(*(x[()] for x in fields))
+        one = () if pressure.ndim else (0,)
+        return GapDistribution(
+            mean=mean[(..., *one)][()],
+            contact_fraction=cells.area[..., -1][(..., *one)][()],
+            **{
+                name: value[(..., *one, slice(None))]
+                for name, value in (
+                    ("location", scale * location),
+                    ("width", np.maximum(scale * width, _NARROWEST)),
+                    ("weight", weight),
+                )
+            },
+        )
 
 
 def _spacing(location: FloatArray) -> FloatArray:

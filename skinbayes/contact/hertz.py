@@ -27,7 +27,7 @@ class HertzSphere(NamedTuple):
 
 
 def sphere_contact(
-    normal_force: ArrayLike, sphere_radius: ArrayLike, reduced_modulus: ArrayLike
+    normal_force: ArrayLike, sphere_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> HertzSphere:
     """Smooth elastic contact of a rigid sphere with a half-space (above Eq. 9 of the paper).
 
@@ -56,7 +56,7 @@ def sphere_contact(
 
     Examples
     --------
-    >>> contact = sphere_contact(0.5, 8e-3, 20e3 / 0.75)
+    >>> contact = sphere_contact(0.5, 8e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{contact.contact_radius:.4e} m, {contact.mean_pressure:.1f} Pa")
     4.8274e-03 m, 6829.4 Pa
     """

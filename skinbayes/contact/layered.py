@@ -17,7 +17,7 @@ SATURATION = 10.0
 _DEEP = 400.0  # of qd, where e^(−2qd) is 0 in floating point
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class LayeredSkin:
     """Stratum corneum bonded to deeper tissue, a layer on a half-space (Fig. 5 of the paper).
 
@@ -28,8 +28,8 @@ class LayeredSkin:
     ----------
     young_modulus_layer : E0, Pa, > 0
     young_modulus_bulk : E1, Pa, > 0
-    poisson_ratio_layer : ν0, dimensionless, −1 < ν0 ≤ 0.5
-    poisson_ratio_bulk : ν1, dimensionless, −1 < ν1 ≤ 0.5
+    poisson_ratio_layer : ν0, dimensionless, −1 < ν0 ≤ 0.5; incompressible if not given
+    poisson_ratio_bulk : ν1, dimensionless, −1 < ν1 ≤ 0.5; incompressible if not given
     layer_thickness : d, m, > 0
 
     References
@@ -38,15 +38,15 @@ class LayeredSkin:
 
     Examples
     --------
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{wet.layer_thickness:.0e}")
     2e-05
     """
 
     young_modulus_layer: Floats
     young_modulus_bulk: Floats
-    poisson_ratio_layer: Floats
-    poisson_ratio_bulk: Floats
+    poisson_ratio_layer: Floats = 0.5
+    poisson_ratio_bulk: Floats = 0.5
     layer_thickness: Floats
 
     def __post_init__(self) -> None:
@@ -76,7 +76,7 @@ def validate_skin(skin: LayeredSkin) -> None:
 
     Examples
     --------
-    >>> validate_skin(LayeredSkin(7e6, -20e3, 0.5, 0.5, 20e-6))
+    >>> validate_skin(LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=-20e3, layer_thickness=20e-6))
     Traceback (most recent call last):
         ...
     skinbayes.errors.InputError: young_modulus_bulk is -20000 Pa, but must be a finite number > 0 Pa.
@@ -192,7 +192,7 @@ def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(surface_response(wet, [0.0, 1e5, 1e9]).round(6))
     [350.         1.703063   1.      ]
     """
@@ -220,7 +220,7 @@ def effective_modulus(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{effective_modulus(wet, 0.0):.1f} {effective_modulus(wet, 1e9):.0f}")
     26666.7 9333333
     """

@@ -33,16 +33,16 @@ class EquivalentCylinder(NamedTuple):
 
     Attributes
     ----------
-    cylinder_radius : Rc, m
     load_per_length : f_N, N/m
+    cylinder_radius : Rc, m
     """
 
-    cylinder_radius: FloatArray
     load_per_length: FloatArray
+    cylinder_radius: FloatArray
 
 
 def line_contact(
-    load_per_length: ArrayLike, cylinder_radius: ArrayLike, reduced_modulus: ArrayLike
+    load_per_length: ArrayLike, cylinder_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> HertzLine:
     """Smooth elastic contact of a rigid cylinder with a half-space (second line above Eq. 9 of the paper).
 
@@ -69,7 +69,7 @@ def line_contact(
 
     Examples
     --------
-    >>> contact = line_contact(21.92, 4.533e-3, 20e3 / 0.75)
+    >>> contact = line_contact(21.92, 4.533e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{contact.half_width:.3e} m, {contact.maximum_pressure:.0f} Pa")
     2.178e-03 m, 6407 Pa
     """
@@ -84,7 +84,7 @@ def line_contact(
 
 
 def cylinder_of_sphere(
-    normal_force: ArrayLike, sphere_radius: ArrayLike, reduced_modulus: ArrayLike
+    normal_force: ArrayLike, sphere_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> EquivalentCylinder:
     """Cylinder that slides on a lubricated elastic solid nearly like a sphere does (Eq. 9 of the paper).
 
@@ -112,16 +112,16 @@ def cylinder_of_sphere(
 
     Examples
     --------
-    >>> cylinder = cylinder_of_sphere(0.2, 8e-3, 20e3 / 0.75)
+    >>> cylinder = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     4.533e-03 m, 21.92 N/m
     """
-    sphere = sphere_contact(normal_force, sphere_radius, reduced_modulus)
-    return cylinder_of_contact(sphere.contact_radius, sphere.mean_pressure, reduced_modulus)
+    sphere = sphere_contact(normal_force, sphere_radius, reduced_modulus=reduced_modulus)
+    return cylinder_of_contact(sphere.mean_pressure, sphere.contact_radius, reduced_modulus=reduced_modulus)
 
 
 def cylinder_of_contact(
-    effective_contact_radius: ArrayLike, mean_pressure: ArrayLike, reduced_modulus: ArrayLike
+    mean_pressure: ArrayLike, effective_contact_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> EquivalentCylinder:
     """Cylinder with a given mean Hertz pressure whose strip squeezes out fluid like a disk (conditions of Eq. 9).
 
@@ -129,8 +129,8 @@ def cylinder_of_contact(
 
     Parameters
     ----------
-    effective_contact_radius : r, m, > 0, any shape; r0 of a sphere, r_e of an ellipse
-    mean_pressure : p̄, Pa, > 0, broadcasts
+    mean_pressure : p̄, Pa, > 0, any shape
+    effective_contact_radius : r, m, > 0, broadcasts; r0 of a sphere, r_e of an ellipse
     reduced_modulus : E*, Pa, > 0, broadcasts
 
     Returns
@@ -143,7 +143,7 @@ def cylinder_of_contact(
 
     Examples
     --------
-    >>> cylinder = cylinder_of_contact(3.5569e-3, 5031.9, 20e3 / 0.75)
+    >>> cylinder = cylinder_of_contact(5031.9, 3.5569e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     4.533e-03 m, 21.92 N/m
     """
@@ -154,4 +154,4 @@ def cylinder_of_contact(
         radius = np.where((radius > 0) & (pressure > 0) & (modulus > 0), radius, np.nan)
         half_width = radius * SQUEEZE_OUT_RATIO
         cylinder_radius = modulus * half_width / (2 * (4 / np.pi) * pressure)
-        return EquivalentCylinder(cylinder_radius[()], (2 * half_width * pressure)[()])
+        return EquivalentCylinder((2 * half_width * pressure)[()], cylinder_radius[()])

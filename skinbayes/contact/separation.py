@@ -18,6 +18,7 @@ _LOWEST, _HIGHEST = 1e-300, 1e150  # Pa; 0 and inf are put in afterwards
 def mean_separation(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
+    *,
     skin: LayeredSkin,
     area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
@@ -26,7 +27,7 @@ def mean_separation(
     The pressure is the rate at which the elastic energy stored at the contacts changes with the separation,
     ``p = −dU/dū``, ``U = (π/2) ∫ q² C E_eff A [γ + (1 − γ) A²] dq`` per area with A = erf(wp), which gives
     ``ū = √π ∫ q² C E_eff w ∫_p^∞ [γ + 3(1 − γ) erf²(wp′)] exp(−w²p′²) dp′/p′ dq``, where w(q) = V(q)^(−½)
-    and V(q) is the stress variance of all wavevectors up to q (Eq. 3 of the paper, V = 4 p0² G). It is the
+    and V(q) is twice the stress variance of all wavevectors up to q (Eq. 3 of the paper, V = 4 p0² G). It is the
     separation of the paper's Sect. 5 and Fig. 10 without water.
 
     Parameters
@@ -44,8 +45,8 @@ def mean_separation(
     Notes
     -----
     For small p ``ū ≈ −u0 ln p + const`` with ``u0 = γ√π ∫ q² C E_eff w dq``; near complete contact it falls
-    like exp(−p²/V). Real contact has u = 0 and counts in the mean. Here V is the uncorrected variance also
-    for γ < 1. With the corrected area in the energy ū would be up to 20 % larger at small pressures, where boundary
+    like exp(−p²/V). Real contact has u = 0 and counts in the mean. Here V is uncorrected also for
+    γ < 1. With the corrected area in the energy ū would be up to 20 % larger at small pressures, where boundary
     elements already give less: 0.92 to 0.96 of this ū on a half-space (p/(E* slope) from 0.003 to 0.1; 1.06 at
     0.3), 0.82 (2 kPa) to 0.98 (30 kPa) for layered skin.
 
@@ -61,8 +62,8 @@ def mean_separation(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> print(f"{mean_separation(6830.0, named_surface('paper_reference'), wet):.4e}")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> print(f"{mean_separation(6830.0, named_surface('paper_reference'), skin=wet):.4e}")
     1.3524e-05
     """
     pressure = np.asarray(nominal_pressure, dtype=np.float64)
@@ -91,7 +92,7 @@ def _sums(
     log_pressure: FloatArray, grid: SeparationGrid, area_correction: FloatArray, slope: bool
 ) -> list[FloatArray]:
     batch = np.broadcast_shapes(grid.weight.shape[:-1], log_pressure.shape[:-1], area_correction.shape)
-    log_variance, inverse_variance, weight = (as_rows(part, batch)[:, None] for part in grid)
+    log_twice_variance, inverse_twice_variance, weight = (as_rows(part, batch)[:, None] for part in grid)
     pressure = as_rows(log_pressure, batch)[..., None]
     closing = closing_function(
         as_rows(area_correction[..., None], batch)[:, 0] if area_correction.ndim else area_correction
@@ -99,7 +100,7 @@ def _sums(
     found = [np.empty(pressure.shape[:2]) for _ in range(2 if slope else 1)]
     for rows, columns in blocks(len(pressure), pressure.shape[1], weight.shape[-1]):
         part = pressure[rows, columns]
-        arguments = log_variance[rows] - 2 * part, inverse_variance[rows] * np.exp(2 * part)
+        arguments = log_twice_variance[rows] - 2 * part, inverse_twice_variance[rows] * np.exp(2 * part)
         function = closing.of(rows)
         values = function.with_slope(*arguments) if slope else (function(*arguments),)
         for total, value in zip(found, values, strict=True):

@@ -16,7 +16,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.layered import LayeredSkin, _contrast, inverse_response, reduced_modulus
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness._rules import gauss_unit
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
@@ -44,12 +44,12 @@ class Band(NamedTuple):
     ----------
     wavevector : q, 1/m, shape ``(..., n)``
     stretch : dln q by d(share), dimensionless, shape ``(..., n)``; 0 at the knee and at the end
-    variance : V of all wavevectors up to q, Pa², shape ``(..., n)``
+    twice_variance : V of all wavevectors up to q, Pa², shape ``(..., n)``
     """
 
     wavevector: FloatArray
     stretch: FloatArray
-    variance: FloatArray
+    twice_variance: FloatArray
 
 
 _INNER, _INNER_WEIGHTS = gauss_unit(4)
@@ -62,13 +62,13 @@ _LAYER_PLACE, _LAYER_WIDTH = np.log(0.6), 1.5
 def resolve(spectrum: PowerSpectrum, skin: LayeredSkin, places: Places) -> Band:
     """Wavevectors at given places of the band, with V; silences no warnings."""
     if isinstance(spectrum, SelfAffineSpectrum):
-        q, stretch, variance = _self_affine(spectrum, skin, places.plateau, places.fractal)
+        q, stretch, twice_variance = _self_affine(spectrum, skin, places.plateau, places.fractal)
     else:
         start, end = (np.log(with_axes(q, 1)) for q in (spectrum.wavevector_min, spectrum.wavevector_max))
         q = np.exp(join(start + (end - start) * places.whole, end))
         stretch = join((end - start) * np.ones_like(places.whole), 0 * end)
-        variance = stress_variance(spectrum, skin, q)
-    return Band(q, stretch, np.maximum(variance, _NO_VARIANCE))
+        twice_variance = twice_stress_variance(spectrum, skin, wavevector=q)
+    return Band(q, stretch, np.maximum(twice_variance, _NO_VARIANCE))
 
 
 def _self_affine(
@@ -108,13 +108,13 @@ class SeparationGrid(NamedTuple):
 
     Attributes
     ----------
-    log_variance : ln V, V in Pa², shape ``(..., n)``
-    inverse_variance : 1/V, 1/Pa², shape ``(..., n)``
+    log_twice_variance : ln V, V in Pa², shape ``(..., n)``
+    inverse_twice_variance : 1/V, 1/Pa², shape ``(..., n)``
     weight : m, shape ``(..., n)``
     """
 
-    log_variance: FloatArray
-    inverse_variance: FloatArray
+    log_twice_variance: FloatArray
+    inverse_twice_variance: FloatArray
     weight: FloatArray
 
 
@@ -135,12 +135,12 @@ _TABLE_WEIGHTS = np.append(_WHOLE_WEIGHTS, 0.0)
 
 def separation_grid(spectrum: PowerSpectrum, skin: LayeredSkin) -> SeparationGrid:
     """The grid for a spectrum and a skin, each scalar or batched; silences no warnings."""
-    q, stretch, variance = resolve(spectrum, skin, _PLACES)
+    q, stretch, twice_variance = resolve(spectrum, skin, _PLACES)
     compliance, fall = compliance_fall(skin, q)
     measure = stretch * (_WEIGHTS if isinstance(spectrum, SelfAffineSpectrum) else _TABLE_WEIGHTS)
-    weight = fall * measure * np.sqrt(variance / np.pi)
-    weight[..., -1] = compliance[..., -1] * np.sqrt(variance[..., -1] / np.pi)
-    return SeparationGrid(np.log(variance), 1 / variance, weight)
+    weight = fall * measure * np.sqrt(twice_variance / np.pi)
+    weight[..., -1] = compliance[..., -1] * np.sqrt(twice_variance[..., -1] / np.pi)
+    return SeparationGrid(np.log(twice_variance), 1 / twice_variance, weight)
 
 
 def join(*parts: FloatArray) -> FloatArray:

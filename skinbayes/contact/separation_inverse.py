@@ -20,6 +20,7 @@ _ROUNDS, _CLOSE = 40, 1e-12
 def pressure_at_separation(
     separation: ArrayLike,
     spectrum: PowerSpectrum,
+    *,
     skin: LayeredSkin,
     area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
@@ -51,15 +52,15 @@ def pressure_at_separation(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> print(f"{pressure_at_separation(14e-6, named_surface('paper_reference'), wet):.1f}")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> print(f"{pressure_at_separation(14e-6, named_surface('paper_reference'), skin=wet):.1f}")
     6290.6
     """
     target = np.asarray(separation, dtype=np.float64)
     gamma = np.asarray(area_correction, dtype=np.float64)
     with np.errstate(all="ignore"):
         grid = separation_grid(spectrum, skin)
-        scale = grid.log_variance[..., -1:] / 2
+        scale = grid.log_twice_variance[..., -1:] / 2
         decay = 2 * with_axes(gamma, 1) * grid.weight.sum(axis=-1, keepdims=True)  # u0
 
         def straight(mean: FloatArray) -> FloatArray:

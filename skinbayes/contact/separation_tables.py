@@ -1,7 +1,7 @@
 """The universal function behind the mean interfacial separation.
 
 Persson's theory gives each wavevector the gap ``∝ w I(wp)`` with ``I(x) = γ E₁(x²)/2 + 3(1 − γ) J(x)``,
-``J(x) = ∫_x^∞ erf²(t) e^(−t²) dt/t``. Integrated once more over the stress variance V = w⁻², which leaves integrands
+``J(x) = ∫_x^∞ erf²(t) e^(−t²) dt/t``. Integrated once more over V = w⁻², twice the stress variance, which leaves integrands
 without the singularity of w at the smallest wavevector, this becomes
 
 ``Q(x) = 2 ∫_x^∞ (t − x)/t² [γ + 3(1 − γ) erf²(t)] e^(−t²) dt``,  ``√V Q(p/√V) = ∫_0^V I(p/√v) dv/√v``.

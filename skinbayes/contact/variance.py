@@ -1,4 +1,4 @@
-"""Variance of the contact stress that roughness causes."""
+"""Width of the distribution of contact stress that roughness causes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 
-def stress_variance(
-    spectrum: PowerSpectrum, skin: LayeredSkin, wavevector: ArrayLike | None = None
+def twice_stress_variance(
+    spectrum: PowerSpectrum, skin: LayeredSkin, *, wavevector: ArrayLike | None = None
 ) -> FloatArray:
-    """Width of the stress distribution in complete contact, ``V = π ∫ q³ C(q) E_eff(q)² dq``, Pa².
+    """Twice the variance of the stress in complete contact, ``V = π ∫ q³ C(q) E_eff(q)² dq = 2 ⟨(σ − p0)²⟩``, Pa².
 
-    V is ``4 p0² G`` with G of Eq. 3 of the paper; the stress variance proper is V/2.
+    V is ``4 p0² G`` with G of Eq. 3 of the paper; √V is what pressure is divided by in the error functions of the theory.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def stress_variance(
 
     Returns
     -------
-    stress_variance : Pa², batch shape, plus the axis of ``wavevector`` if given; nan for impossible
+    twice_stress_variance : Pa², batch shape, plus the axis of ``wavevector`` if given; nan for impossible
         parameters
 
     Notes
@@ -43,8 +43,8 @@ def stress_variance(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> print(f"{stress_variance(named_surface('paper_reference'), wet):.5e}")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> print(f"{twice_stress_variance(named_surface('paper_reference'), wet):.5e}")
     3.36644e+14
     """
     if wavevector is None:

@@ -130,6 +130,11 @@ class Dataset:
         return text.getvalue()
 
     @property
+    def shown(self) -> str:
+        """What people know it by: a folder with provenance by its key, a file by its own name."""
+        return self.path.name if self.path.stem == self.key else self.key
+
+    @property
     def n_rows(self) -> int:
         """Number of rows."""
         return len(next(iter(self.columns.values())))

@@ -47,6 +47,7 @@ def copy_model(name: str, target: Path, data: str | Path | None = None) -> Model
     changes: list[str] = []
     lines = spec.text.splitlines()
     _retitle(lines, spec, None if data is None else Path(data))
+    _resource_noise(lines, spec)
     if data is not None:
         if not spec.observables:
             raise InputError(
@@ -73,6 +74,19 @@ def _retitle(lines: list[str], spec: ModelSpec, data: Path | None) -> None:
         0,
         f"# Copied from the shipped model '{spec.name}'. Every value and prior is yours now: change what you know better.",
     )
+
+
+def _resource_noise(lines: list[str], spec: ModelSpec) -> None:
+    """Say of the noise that it was copied: the shipped reasons are about the data of the shipped model."""
+    reason = (
+        f"Copied from '{spec.name}', whose own data it describes; say what you know of the scatter of yours"
+    )
+    inside = False
+    for i, line in enumerate(lines):
+        if line.startswith("["):
+            inside = re.match(r"\[noise[].]", line) is not None
+        elif inside:
+            lines[i] = re.sub(r'\bsource = "[^"]*"', f'source = "{reason}"', line)
 
 
 def _take_data(lines: list[str], spec: ModelSpec, dataset: Dataset, target: Path, changes: list[str]) -> None:

@@ -175,7 +175,12 @@ def _parse_prior(quantity: Quantity, family: str, raw: Any, where: str, unit: st
             f"{where}: {family} is for dimensionless parameters; {quantity.name} has the unit {unit}"
         )
     numbers = [
-        parse_quantity(given, unit if argument.kind == "value" else "1", where=f"{where} ({argument.name})")
+        parse_quantity(
+            given,
+            unit if argument.kind == "value" else "1",
+            where=f"{where} ({argument.name})",
+            difference=argument.is_width,
+        )
         for given, argument in zip(arguments, expected, strict=True)
     ]
     try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
-from io import BufferedReader
+from io import BufferedReader, BytesIO
 from pathlib import Path
 
 from skinbayes.errors import InputError
@@ -18,7 +18,7 @@ _KINDS = {
 }
 
 
-def open_file(path: Path, largest: int, expected: str) -> BufferedReader:
+def open_file(path: Path, largest: int, expected: str) -> BufferedReader | BytesIO:
     """Open an ordinary file for reading bytes.
 
     Its kind and size are looked at before anything is read, and opening never waits: a pipe that nobody writes to, a terminal
@@ -44,7 +44,11 @@ def open_file(path: Path, largest: int, expected: str) -> BufferedReader:
             raise
         raise InputError(f"{path}: cannot be read ({_reason(error)}); expected {expected}") from None
     try:
-        _check(os.fstat(stream.fileno()), path, largest, expected)
+        found = os.fstat(stream.fileno())
+        _check(found, path, largest, expected)
+        if not found.st_size:  # empty, or of those that the system makes while they are read, without an end
+            stream.close()
+            return BytesIO()
     except BaseException:
         stream.close()
         raise
@@ -58,7 +62,7 @@ def read_file(path: Path, largest: int, expected: str) -> bytes:
             data = stream.read(largest + 1)
         except OSError as error:
             raise InputError(f"{path}: cannot be read ({_reason(error)}); expected {expected}") from None
-    if len(data) > largest:  # it grew, or is of those that do not tell their size
+    if len(data) > largest:  # it grew
         raise InputError(f"{path}: more than {largest:,} bytes; expected {expected} of at most {largest:,}")
     return data
 

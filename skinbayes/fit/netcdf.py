@@ -45,6 +45,7 @@ _RECORD: dict[str, type] = {
     "priors": dict,
     "data": dict,
     "sampling": dict,
+    "versions": dict,
 }
 """What the provenance of every result holds."""
 

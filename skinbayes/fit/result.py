@@ -90,7 +90,8 @@ class Fit:
         -------
         pandas.DataFrame
             Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), ``ess_bulk``, ``ess_tail``,
-            ``r_hat``, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``.
+            ``r_hat``, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``. An effective sample size is nan where
+            the run was too short to know it.
         """
         import pandas
 
@@ -106,8 +107,9 @@ class Fit:
                 "median": median,
                 "q05": q05,
                 "q95": q95,
-                "ess_bulk": sampling["ess_bulk"][i] if free else np.nan,
-                "ess_tail": sampling["ess_tail"][i] if free else np.nan,
+                # 0 is said where the autocorrelation has not died out: then it is not known
+                "ess_bulk": (sampling["ess_bulk"][i] or np.nan) if free else np.nan,
+                "ess_tail": (sampling["ess_tail"][i] or np.nan) if free else np.nan,
                 "r_hat": sampling["r_hat"][i] if free else np.nan,
                 "prior_median": prior50,
                 "prior_q05": prior05,

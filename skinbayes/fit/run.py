@@ -152,9 +152,7 @@ def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> d
     dataset = problem.dataset
     data: dict[str, Any] = {"fingerprint": problem.data_fingerprint}
     if dataset is not None:
-        # a folder with provenance is known by its own name, a file by its own
-        name = dataset.path.name if dataset.path.stem == dataset.key else dataset.key
-        data |= {"key": dataset.key, "name": name, "sha256": dataset.sha256, "rows": dataset.n_rows}
+        data |= {"key": dataset.key, "name": dataset.shown, "sha256": dataset.sha256, "rows": dataset.n_rows}
         if dataset.provenance is not None:
             data["origin"] = dataset.provenance.model_dump()
     return {

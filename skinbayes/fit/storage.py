@@ -7,12 +7,22 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skinbayes import __version__
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError, RepairWarning
-from skinbayes.fit.manifest import RESULT, RUN, STEPS, YARDSTICK_MODELS, Manifest, read_manifest, trouble
+from skinbayes.fit.manifest import (
+    RESULT,
+    RUN,
+    STEPS,
+    SUMMARY,
+    YARDSTICK_MODELS,
+    Manifest,
+    read_manifest,
+    trouble,
+)
 from skinbayes.fit.netcdf import read_result, result_image
 from skinbayes.fit.result import Fit
-from skinbayes.sealed import DamagedFile
+from skinbayes.sealed import DamagedFile, file_digest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,7 +54,8 @@ def load_fit(path: str | Path) -> Fit:
     Warns
     -----
     RepairWarning
-        The model of an undamaged run directory cannot be built again, as after a change of skinbayes: the fit has no ``problem``.
+        The model cannot be built again, as after a change of skinbayes: the fit has no ``problem``. Or the table of the
+        run, which is not read, was changed.
     """
     path = Path(path)
     run = path if path.is_dir() else None
@@ -70,8 +81,12 @@ def load_fit(path: str | Path) -> Fit:
             raise InputError(
                 f"{file}: not the result of this run, or changed since (its sha256 is not the one in {RUN}){steps}"
             )
+        if (table := run / SUMMARY).is_file() and file_digest(table) != manifest.files.get(SUMMARY):
+            _warn(
+                f"{table}: damaged, or changed since the run was made; the numbers of the run are in {file}"
+            )
     provenance = dict(provenance)
-    return Fit(groups=groups, provenance=provenance, problem=_rebuild(run, manifest, provenance))
+    return Fit(groups=groups, provenance=provenance, problem=_rebuild(file, run, manifest, provenance))
 
 
 def _unfinished(path: Path) -> str:
@@ -109,11 +124,17 @@ def _warn(message: str) -> None:
     warnings.warn(message, RepairWarning, stacklevel=3)
 
 
-def _rebuild(run: Path | None, manifest: Manifest | None, provenance: Mapping[str, Any]) -> Problem | None:
+def _rebuild(
+    file: Path, run: Path | None, manifest: Manifest | None, provenance: Mapping[str, Any]
+) -> Problem | None:
     """The problem of a stored run, from the copies beside it or, for a bare file, from the shipped models."""
     from skinbayes.problem import load_problem
 
-    reason = "what they say is not what was fitted"
+    reason, written = "what they say is not what was fitted", provenance["versions"].get("skinbayes")
+    if run is None and written != __version__:
+        reason = f"the file was written by version {written} of skinbayes, this is {__version__}"
+    elif run is None:
+        reason = "the model or its data are not what was fitted"
     try:
         shipped = str(provenance["model_path"])
         problem = _from_copies(run, manifest) if run and manifest else load_problem(shipped)
@@ -122,11 +143,11 @@ def _rebuild(run: Path | None, manifest: Manifest | None, provenance: Mapping[st
             return _renamed(problem, provenance)
     except (InputError, OSError, ValueError, KeyError) as error:
         reason = str(error)
-    if run is not None:
-        _warn(
-            f"{run}: the model cannot be built again from the undamaged copies of model and data ({reason}). "
-            "The numbers are read as they were computed; what needs the model is left out"
-        )
+    copies = "" if run is None else " from the undamaged copies of model and data"
+    _warn(
+        f"{run or file}: the model cannot be built again{copies} ({reason}). "
+        "The numbers are read as they were computed; what needs the model is left out"
+    )
     return None
 
 

@@ -53,14 +53,14 @@ def _bridged(
     state = capillary_state(
         film,
         nominal_pressure_of(inputs),
-        spectrum_of(inputs, tables),
-        skin_of(inputs),
-        inputs["surface_tension"],
-        inputs["contact_angle_skin"],
-        inputs["contact_angle_counterface"],
-        inputs["area_correction"],
-        closure,
-        refine,
+        spectrum=spectrum_of(inputs, tables),
+        skin=skin_of(inputs),
+        surface_tension=inputs["surface_tension"],
+        contact_angle_skin=inputs["contact_angle_skin"],
+        contact_angle_counterface=inputs["contact_angle_counterface"],
+        area_correction=inputs["area_correction"],
+        closure=closure,
+        refine=refine,
     )
     return {name: np.asarray(getattr(state, name)) for name in OBSERVABLES}
 

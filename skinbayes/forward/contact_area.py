@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import effective_modulus, stress_variance, surface_response
+from skinbayes.contact import effective_modulus, surface_response, twice_stress_variance
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
@@ -32,21 +32,25 @@ def wavevector_of(inputs: Inputs, spectrum: PowerSpectrum) -> FloatArray:
     return np.asarray(spectrum.wavevector_max, dtype=float)
 
 
-def _variance(inputs: Inputs, tables: Tables, wavevector: FloatArray) -> FloatArray:
-    """Stress variance at one wavevector a row, shape ``(B, N)``."""
+def _twice_stress_variance(inputs: Inputs, tables: Tables, wavevector: FloatArray) -> FloatArray:
+    """Twice the stress variance at one wavevector a row, shape ``(B, N)``."""
     if all(np.shape(inputs[name])[-1:] in ((), (1,)) for name in _ENTERS_VARIANCE if name in inputs):
         # nothing but the wavevector differs from row to row: one cumulative integral serves all rows
         batch = {
             name: np.atleast_2d(value)[:, 0] for name, value in inputs.items() if name in _ENTERS_VARIANCE
         }
-        return stress_variance(spectrum_of(batch, tables), skin_of({**inputs, **batch}), wavevector)
-    return stress_variance(spectrum_of(inputs, tables), skin_of(inputs), wavevector[..., np.newaxis])[..., 0]
+        return twice_stress_variance(
+            spectrum_of(batch, tables), skin_of({**inputs, **batch}), wavevector=wavevector
+        )
+    return twice_stress_variance(
+        spectrum_of(inputs, tables), skin_of(inputs), wavevector=wavevector[..., np.newaxis]
+    )[..., 0]
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
     wavevector = wavevector_of(inputs, spectrum)
-    area = contact_area_of(inputs, tables, _variance(inputs, tables, wavevector))
+    area = contact_area_of(inputs, tables, _twice_stress_variance(inputs, tables, wavevector))
     return {
         "relative_contact_area": area.total,
         "relative_contact_area_elastic": area.elastic,
@@ -65,7 +69,9 @@ def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
 def _profile(inputs: Inputs, tables: Tables, wavevector: FloatArray) -> FloatArray:
     spectrum = spectrum_of(inputs, tables)
     column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
-    return contact_area_of(column, tables, stress_variance(spectrum, skin_of(inputs), wavevector)).total
+    return contact_area_of(
+        column, tables, twice_stress_variance(spectrum, skin_of(inputs), wavevector=wavevector)
+    ).total
 
 
 CONTACT_AREA_PROFILE = Profile(

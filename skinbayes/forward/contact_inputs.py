@@ -12,7 +12,7 @@ from skinbayes.contact import (
     elastoplastic_contact_area,
     reduced_modulus,
     sphere_contact,
-    stress_variance,
+    twice_stress_variance,
     validate_skin,
 )
 from skinbayes.forward.alike_rows import on_distinct
@@ -51,10 +51,10 @@ def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     """
     table = tables.spectrum
     if table is None:
-        return SelfAffineSpectrum(*(inputs[name] for name in ROUGHNESS_INPUTS))
+        return SelfAffineSpectrum(**{name: inputs[name] for name in ROUGHNESS_INPUTS})
     if "rms_height" in inputs and isinstance(table, TabulatedSpectrum):
         scale = (inputs["rms_height"] / rms_height(table)) ** 2 * np.asarray(table.scale)
-        return TabulatedSpectrum(table.wavevector, table.node_power, scale)
+        return TabulatedSpectrum(table.wavevector, table.node_power, scale=scale)
     return table
 
 
@@ -80,7 +80,10 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
         return np.asarray(inputs["normal_force"] / inputs["nominal_contact_area"], dtype=float)
     modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
     return np.asarray(
-        sphere_contact(inputs["normal_force"], inputs["sphere_radius"], modulus).mean_pressure, dtype=float
+        sphere_contact(
+            inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus
+        ).mean_pressure,
+        dtype=float,
     )
 
 
@@ -104,20 +107,23 @@ _ENTERS_VARIANCE = (*SKIN_INPUTS, "poisson_ratio_layer", "poisson_ratio_bulk", *
 
 
 def variance_of(inputs: Inputs, tables: Tables) -> FloatArray:
-    """Return the stress variance at full magnification [Pa²], an integral that is made once for rows of equal skin.
+    """Return twice the stress variance V at full magnification [Pa²], an integral that is made once for rows of equal skin.
 
     Load and yield stress do not enter it: rows that differ in these alone share it.
     """
     return on_distinct(
         {name: inputs[name] for name in _ENTERS_VARIANCE if name in inputs},
-        lambda skins: np.asarray(stress_variance(spectrum_of(skins, tables), skin_of(skins))),
+        lambda skins: np.asarray(twice_stress_variance(spectrum_of(skins, tables), skin_of(skins))),
     )
 
 
-def contact_area_of(inputs: Inputs, tables: Tables, variance: FloatArray | None = None) -> ContactArea:
-    """Return the relative contact area (elastic, plastic) at full magnification, or for a given stress variance."""
-    if variance is None:
-        variance = stress_variance(spectrum_of(inputs, tables), skin_of(inputs))
+def contact_area_of(inputs: Inputs, tables: Tables, twice_variance: FloatArray | None = None) -> ContactArea:
+    """Return the relative contact area (elastic, plastic) at full magnification, or for a given V."""
+    if twice_variance is None:
+        twice_variance = twice_stress_variance(spectrum_of(inputs, tables), skin_of(inputs))
     return elastoplastic_contact_area(
-        nominal_pressure_of(inputs), variance, inputs["yield_stress"], inputs["area_correction"]
+        nominal_pressure_of(inputs),
+        twice_variance,
+        yield_stress=inputs["yield_stress"],
+        area_correction=inputs["area_correction"],
     )

@@ -17,6 +17,7 @@ from skinbayes.forward.drying_inputs import (
     DRYING_DEFAULTS,
     DRYING_INPUTS,
     evaporation_rate_of,
+    explain_evaporation,
     film_contact_of,
     initial_film_of,
 )
@@ -24,6 +25,7 @@ from skinbayes.forward.drying_table import prepared_drying
 from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import BridgeTable, drying_curve
 
+_NOTHING_HAPPENS = 600.0  # what is shown where there is no film or none that evaporates, s
 OBSERVABLES = ("friction_coefficient", "film_thickness", "relative_contact_area")
 
 
@@ -33,12 +35,12 @@ def _dried(
     curve = drying_curve(
         time,
         inputs["wetting_time"],
-        initial_film_of(inputs),
-        evaporation_rate_of(inputs),
-        film_contact_of(inputs, tables, closure, table),
-        inputs["frictional_shear_stress"],
-        nominal_pressure_of(inputs),
-        inputs["film_spread"],
+        initial_film=initial_film_of(inputs),
+        evaporation_rate=evaporation_rate_of(inputs),
+        contact=film_contact_of(inputs, tables, closure, table),
+        frictional_shear_stress=inputs["frictional_shear_stress"],
+        nominal_pressure=nominal_pressure_of(inputs),
+        film_spread=inputs["film_spread"],
     )
     return {name: np.asarray(getattr(curve, name)) for name in OBSERVABLES}
 
@@ -51,10 +53,17 @@ def _evaluate(
     return along_rows(known, "time", partial(_dried, tables=tables, closure=closure, table=table))
 
 
+def _explain(inputs: Inputs, tables: Tables) -> list[str]:
+    return explain_evaporation(inputs) + explain_small_contact(inputs, tables)
+
+
 def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
     """From a little before wetting until a little after the film is gone."""
     start = float(np.median(inputs["wetting_time"]))
-    lasts = float(np.median(initial_film_of(inputs) / evaporation_rate_of(inputs)))
+    with np.errstate(all="ignore"):
+        lasts = float(np.median(initial_film_of(inputs) / evaporation_rate_of(inputs)))
+    if not 0 < lasts < np.inf:
+        lasts = _NOTHING_HAPPENS
     return np.linspace(max(0.0, start - 0.1 * lasts), start + 1.1 * lasts, 301)
 
 
@@ -99,7 +108,7 @@ def drying_model(closure: Closure = "gaussian") -> ForwardModel:
         costly=True,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
-        explain=explain_small_contact,
+        explain=_explain,
         flags=small_contact_flags,
         flag_meanings=SMALL_CONTACT,
         derived=pressure_and_slope,

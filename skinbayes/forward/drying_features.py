@@ -17,6 +17,7 @@ from skinbayes.forward.drying_inputs import (
     DRYING_DEFAULTS,
     DRYING_INPUTS,
     evaporation_rate_of,
+    explain_evaporation,
     film_contact_of,
     initial_film_of,
 )
@@ -33,11 +34,11 @@ def _features(
     features = drying_features(
         inputs["wetting_time"],
         initial_film_of(inputs),
-        evaporation_rate_of(inputs),
-        film_contact_of(inputs, tables, closure, table),
-        inputs["frictional_shear_stress"],
-        nominal_pressure_of(inputs),
-        inputs["film_spread"],
+        evaporation_rate=evaporation_rate_of(inputs),
+        contact=film_contact_of(inputs, tables, closure, table),
+        frictional_shear_stress=inputs["frictional_shear_stress"],
+        nominal_pressure=nominal_pressure_of(inputs),
+        film_spread=inputs["film_spread"],
     )
     return {name: np.asarray(getattr(features, name)) for name in OBSERVABLES}
 
@@ -53,8 +54,13 @@ def _evaluate(
 def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
     """Why there is no peak, or none after wetting."""
     found = _evaluate(inputs, tables, closure)
-    missing = np.isnan(found["peak_time"]) & np.isfinite(found["dry_time"])
-    said = []
+    missing = np.isnan(found["peak_time"]) & np.isfinite(found["dry_time"] + found["wet_plateau"])
+    said = explain_evaporation(inputs)
+    if (evaporation_rate_of(inputs) == 0).any():
+        said.append(
+            "no friction peak: nothing evaporates, and the skin stays as it was wetted; peak_time, peak_friction, peak_width and "
+            "dry_time are missing"
+        )
     wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
     pull = inputs["surface_tension"] * np.maximum(wetting, 0.0)
     if (missing & (pull == 0.0)).any():

@@ -65,7 +65,7 @@ def initial_film_of(inputs: Inputs) -> FloatArray:
     if "initial_film" in inputs:
         return np.asarray(inputs["initial_film"], dtype=float)
     volume, length, width = (inputs[name] for name in FILM_ALTERNATIVES[1])
-    return np.asarray(film_of_droplet(volume, length, width), dtype=float)
+    return np.asarray(film_of_droplet(volume, length, contact_width=width), dtype=float)
 
 
 def evaporation_rate_of(inputs: Inputs) -> FloatArray:
@@ -73,8 +73,23 @@ def evaporation_rate_of(inputs: Inputs) -> FloatArray:
     if "evaporation_rate" in inputs:
         return np.asarray(inputs["evaporation_rate"], dtype=float)
     surface, air, humidity = (inputs[name] for name in EVAPORATION_ALTERNATIVES[1])
-    rate = evaporation_rate(surface, air, humidity, inputs["air_speed"], inputs["latent_heat"])
+    rate = evaporation_rate(
+        surface_temperature=surface,
+        air_temperature=air,
+        relative_humidity=humidity,
+        air_speed=inputs["air_speed"],
+        latent_heat=inputs["latent_heat"],
+    )
     return np.asarray(rate, dtype=float)
+
+
+def explain_evaporation(inputs: Inputs) -> list[str]:
+    """One sentence where water condenses."""
+    if not (evaporation_rate_of(inputs) < 0).any():
+        return []
+    return [
+        "water condenses on the skin instead of evaporating, and a film that grows is not described; nothing is predicted there"
+    ]
 
 
 def film_contact_of(
@@ -84,16 +99,16 @@ def film_contact_of(
     return film_contact(
         nominal_pressure_of(inputs),
         spectrum_of(inputs, tables),
-        skin_of(inputs),
-        inputs["surface_tension"],
-        inputs["contact_angle_skin"],
-        inputs["contact_angle_counterface"],
-        inputs["young_modulus_layer_dry"],
-        inputs["yield_stress"],
-        inputs["area_correction"],
-        closure,
-        inputs["film_floor"],
-        inputs.get("hardening_film"),
-        inputs["hardening_sharpness"],
-        table,
+        skin=skin_of(inputs),
+        surface_tension=inputs["surface_tension"],
+        contact_angle_skin=inputs["contact_angle_skin"],
+        contact_angle_counterface=inputs["contact_angle_counterface"],
+        young_modulus_layer_dry=inputs["young_modulus_layer_dry"],
+        yield_stress=inputs["yield_stress"],
+        area_correction=inputs["area_correction"],
+        closure=closure,
+        film_floor=inputs["film_floor"],
+        hardening_film=inputs.get("hardening_film"),
+        hardening_sharpness=inputs["hardening_sharpness"],
+        table=table,
     )

@@ -44,10 +44,12 @@ def table_over(
     if not pull.max() > 0:
         return None
     height = np.broadcast_to(rms_height(spectrum), load.shape)
-    groups = skin_groups(load, pull, height, spectrum, skin, inputs["area_correction"])
+    groups = skin_groups(
+        load, pull, height=height, spectrum=spectrum, skin=skin, area_correction=inputs["area_correction"]
+    )
     depth = float(np.max(load / np.asarray(skin.young_modulus_bulk))) / known["film_floor"][0]
     low, high = ({name: float(end(x)) for name, x in groups.items()} for end in (np.min, np.max))
-    return bridge_table(low, high, depth, tables.spectrum, progress=progress)
+    return bridge_table(low, high, depth=depth, spectrum=tables.spectrum, progress=progress)
 
 
 def prepared_drying(

@@ -26,7 +26,7 @@ def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         {**inputs, "nominal_pressure": pressure}, tables, variance_of(inputs, tables)
     ).total
     shear_stress = inputs["frictional_shear_stress"]
-    return {"friction_coefficient": friction_coefficient(shear_stress, area, pressure)}
+    return {"friction_coefficient": friction_coefficient(shear_stress, area, nominal_pressure=pressure)}
 
 
 def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import stress_variance, total_contact_area
+from skinbayes.contact import total_contact_area, twice_stress_variance
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
@@ -74,13 +74,13 @@ def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closu
     state = capillary_state_in_humid_air(
         humidity,
         inputs["temperature"],
-        inputs["nominal_pressure"],
-        spectrum_of(inputs, tables),
-        skin_of(inputs),
-        inputs["contact_angle_skin"],
-        inputs["contact_angle_counterface"],
-        inputs["area_correction"],
-        closure,
+        nominal_pressure=inputs["nominal_pressure"],
+        spectrum=spectrum_of(inputs, tables),
+        skin=skin_of(inputs),
+        contact_angle_skin=inputs["contact_angle_skin"],
+        contact_angle_counterface=inputs["contact_angle_counterface"],
+        area_correction=inputs["area_correction"],
+        closure=closure,
         count=False,
     )
     return {"capillary_pressure": np.asarray(state.capillary_pressure)}
@@ -102,11 +102,16 @@ def _evaluate(
 ) -> dict[str, FloatArray]:
     known = _with_pressing(inputs)
     load, pull = known["nominal_pressure"], _pull(known, tables, closure, table)
-    variance = stress_variance(spectrum_of(known, tables), skin_of(known))
-    area = total_contact_area(load + pull, variance, known["yield_stress"], known["area_correction"])
+    twice_variance = twice_stress_variance(spectrum_of(known, tables), skin_of(known))
+    area = total_contact_area(
+        load + pull,
+        twice_variance,
+        yield_stress=known["yield_stress"],
+        area_correction=known["area_correction"],
+    )
     return {
         "friction_coefficient": np.asarray(
-            friction_coefficient(known["frictional_shear_stress"], area, load)
+            friction_coefficient(known["frictional_shear_stress"], area, nominal_pressure=load)
         ),
         "relative_contact_area": area,
         "kelvin_radius": kelvin_radius_of(known),

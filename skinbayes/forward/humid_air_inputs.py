@@ -69,7 +69,9 @@ def at_skin(inputs: Inputs) -> dict[str, FloatArray]:
         return dict(inputs)
     air, surface = inputs["air_temperature"], inputs["surface_temperature"]
     known = {name: value for name, value in inputs.items() if not name.endswith("_temperature")}
-    humidity = humidity_at_surface(inputs["relative_humidity"], air, surface)
+    humidity = humidity_at_surface(
+        relative_humidity=inputs["relative_humidity"], air_temperature=air, surface_temperature=surface
+    )
     return known | {"temperature": surface, "relative_humidity": np.asarray(humidity)}
 
 
@@ -78,7 +80,11 @@ def with_modulus(inputs: Inputs) -> dict[str, FloatArray]:
     known = {name: value for name, value in at_skin(inputs).items() if name not in CURVE_INPUTS}
     if "young_modulus_layer" not in known:
         curve = young_modulus_at_humidity(
-            known["relative_humidity"], *(inputs[name] for name in CURVE_INPUTS)
+            known["relative_humidity"],
+            inputs["young_modulus_layer_dry"],
+            young_modulus_wet=inputs["young_modulus_layer_wet"],
+            transition_humidity=inputs["transition_humidity"],
+            sharpness=inputs["transition_sharpness"],
         )
         known["young_modulus_layer"] = np.asarray(curve)
     return known
@@ -91,13 +97,20 @@ def kelvin_radius_of(inputs: Inputs) -> FloatArray:
 
 def bridges_form(inputs: Inputs) -> NDArray[np.bool_]:
     """Tell where water on skin and counterface makes bridges, cos θ1 + cos θ2 > 0."""
-    return np.asarray(kelvin_gap(1.0, inputs["contact_angle_skin"], inputs["contact_angle_counterface"]) > 0)
+    return np.asarray(
+        kelvin_gap(
+            1.0, inputs["contact_angle_skin"], contact_angle_counterface=inputs["contact_angle_counterface"]
+        )
+        > 0
+    )
 
 
 def kelvin_gap_of(inputs: Inputs) -> FloatArray:
     """Return d_K [m], the largest gap that a bridge spans; 0 without bridges and in dry air, inf in saturated air."""
     radius = kelvin_radius_of(inputs)
-    found = kelvin_gap(radius, inputs["contact_angle_skin"], inputs["contact_angle_counterface"])
+    found = kelvin_gap(
+        radius, inputs["contact_angle_skin"], contact_angle_counterface=inputs["contact_angle_counterface"]
+    )
     return np.asarray(found)
 
 
@@ -108,7 +121,9 @@ def pull_of(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
     """
     gap, load = kelvin_gap_of(inputs), nominal_pressure_of(inputs)
     tension = surface_tension_of_water(inputs["temperature"])
-    wetting = kelvin_gap(1.0, inputs["contact_angle_skin"], inputs["contact_angle_counterface"])
+    wetting = kelvin_gap(
+        1.0, inputs["contact_angle_skin"], contact_angle_counterface=inputs["contact_angle_counterface"]
+    )
     with np.errstate(all="ignore"):
         strength = np.where(
             gap < LINEAR_GAP, tension * wetting / LINEAR_GAP, tension / kelvin_radius_of(inputs)

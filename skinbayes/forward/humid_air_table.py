@@ -68,7 +68,7 @@ class TabulatedPull:
         # neither without bridges nor in a flooded gap does anything pull
         bridged = wetted & np.isfinite(gap)
         with np.errstate(all="ignore"):
-            groups = humid_groups(load, np.where(bridged, gap, height), height, flat)
+            groups = humid_groups(load, np.where(bridged, gap, height), height=height, skin=flat)
         inside = same & self.table.covers(groups, strength)
         rows = np.flatnonzero(bridged & inside)
         found = np.where(bridged | np.isnan(gap), np.nan, 0.0)
@@ -115,13 +115,18 @@ def pull_over(
     gap, strength = pull_of(inputs)
     spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
     height = np.broadcast_to(rms_height(spectrum), gap.shape)
-    groups = humid_groups(nominal_pressure_of(inputs), gap, height, skin)
+    groups = humid_groups(nominal_pressure_of(inputs), gap, height=height, skin=skin)
     low_ends = {name: float(np.min(value)) for name, value in groups.items()}
     high_ends = {name: float(np.max(value)) for name, value in groups.items()}
     high_ends["load"] = float(np.max(groups["load"] + np.log1p(strength)))
     one = {name: value[0] for name, value in inputs.items()}
     table = humid_table(
-        low_ends, high_ends, spectrum_of(one, tables), skin_of(one), one["area_correction"], progress=progress
+        low_ends,
+        high_ends,
+        spectrum=spectrum_of(one, tables),
+        skin=skin_of(one),
+        area_correction=one["area_correction"],
+        progress=progress,
     )
     return None if table is None else TabulatedPull(table, shape)
 

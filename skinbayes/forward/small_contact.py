@@ -31,7 +31,10 @@ def contact_width(inputs: Inputs) -> FloatArray:
         return np.asarray(2 * np.sqrt(inputs["nominal_contact_area"] / np.pi) + 0 * pressure)
     modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
     return np.asarray(
-        2 * sphere_contact(inputs["normal_force"], inputs["sphere_radius"], modulus).contact_radius
+        2
+        * sphere_contact(
+            inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus
+        ).contact_radius
     )
 
 

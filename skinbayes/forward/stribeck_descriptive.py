@@ -41,12 +41,13 @@ def _friction(inputs: Inputs, product: FloatArray) -> FloatArray:
     """Friction coefficient at ηv [N/m]; all broadcast."""
     plateau, transition, sharpness, rising, slope = (inputs[name] for name in LAW)
     load = inputs["normal_force"] / REFERENCE_LOAD
-    place = product / (transition * load ** inputs["transition_load_exponent"])
-    # 1/(1 + x^a) and x^a/(1 + x^a), neither of which overflows
-    with np.errstate(over="ignore", divide="ignore"):
+    # 1/(1 + x^a) and x^a/(1 + x^a) do not overflow; where x itself, or x^b, is beyond all numbers there is no prediction
+    with np.errstate(all="ignore"):
+        place = product / (transition * load ** inputs["transition_load_exponent"])
         boundary = 1.0 / (1.0 + place**sharpness)
         film = 1.0 / (1.0 + place**-sharpness)
-    return np.asarray(plateau * boundary + rising * place**slope * film)
+        found = plateau * boundary + rising * place**slope * film
+    return np.asarray(np.where(found < np.inf, found, np.nan))
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

@@ -115,7 +115,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
 def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.bool_]]:
     """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast."""
     modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
-    cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], modulus)
+    cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)
     with np.errstate(invalid="ignore"):
         share = 3 * np.pi * products * inputs["velocity_shift_factor"] / np.asarray(cylinder.load_per_length)
         return {"film_near_inlet": share > NOTABLE_FILM, "film_beyond_inlet": share > THICKEST_FILM}
@@ -144,7 +144,7 @@ def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str,
             tables.flow_curves[int(number[_CURVE])],
             sphere_radius=number["sphere_radius"],
             normal_force=number["normal_force"],
-            skin=LayeredSkin(*(float(np.asarray(part)) for part in vars(skin).values())),
+            skin=LayeredSkin(**{name: float(np.asarray(part)) for name, part in vars(skin).items()}),
             spectrum=spectrum_of(one, tables),
             frictional_shear_stress=number["frictional_shear_stress"],
             area_correction=number["area_correction"],

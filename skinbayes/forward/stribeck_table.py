@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,16 +82,21 @@ class TabulatedStribeck:
         parameters = {name: inputs[name] for name in FILM_PARAMETERS if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
-        stress, shift = inputs["frictional_shear_stress"], inputs["velocity_shift_factor"]
-        limits = limit_of(inputs, "inlet_film_limit"), limit_of(inputs, "strain_limit")
-        others = (parameters, stress, shift, True, *limits)
+        others: Any = {
+            "parameters": parameters,
+            "frictional_shear_stress": inputs["frictional_shear_stress"],
+            "velocity_shift_factor": inputs["velocity_shift_factor"],
+            "everything": True,
+            "thickest_film": limit_of(inputs, "inlet_film_limit"),
+            "largest_strain": limit_of(inputs, "strain_limit"),
+        }
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
-            friction = tabulated_friction(self.table, products, *others)
+            friction = tabulated_friction(self.table, products, **others)
             unmeasured = np.zeros(friction.friction_coefficient.shape)
         else:
             friction, liquid = tabulated_friction_of_liquids(
-                self.table, inputs["sliding_speed"], _liquids(tables.flow_curves), *others
+                self.table, inputs["sliding_speed"], liquids=_liquids(tables.flow_curves), **others
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
@@ -134,19 +139,20 @@ def prepare(
     spectrum = spectrum_of(fixed, tables)
     held = {name: ranges[name] for name in FILM_PARAMETERS if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
-    layer, bulk, gamma, strain = (
-        float(fixed[name])
-        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction", "strain_limit")
-    )
+    fixed_for_table: Any = {
+        name: float(fixed[name]) for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+    } | {"largest_strain": float(fixed["strain_limit"])}
 
     def build(unfinished: Unfinished) -> Stored:
         table = build_film_table(
-            held, spectrum, layer, bulk, gamma, processes=cores, progress=progress, largest_strain=strain, kept=unfinished
-        )  # fmt: skip
+            held, spectrum, **fixed_for_table, processes=cores, progress=progress, kept=unfinished
+        )
         return table.to_arrays()
 
     stored = cached(
-        "stribeck", film_table_key(held, spectrum, layer, bulk, gamma, largest_strain=strain), build
+        "stribeck",
+        film_table_key(held, spectrum, **fixed_for_table),
+        build,
     )
     table = FilmTable.from_arrays(*stored)
     tabulated = TabulatedStribeck(table, names)

@@ -12,7 +12,8 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation import mean_separation
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.errors import InputError
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _COUNT = 160
@@ -52,7 +53,8 @@ class AsperityLaw:
         cell = self.separation.searchsorted(separation, side="right") - 1
         cubic, square, slope, level = self.coefficients[:, np.maximum(cell, 0)]
         offset = separation - self.separation[np.maximum(cell, 0)]
-        above = np.maximum(offset, 0.0)
+        # no cubic acts beyond the last knot, where ū may be infinite
+        above = np.where(cell < self.separation.size - 1, np.maximum(offset, 0.0), 0.0)
         exponent = level + slope * offset + above * above * (square + cubic * above)
         rate = slope + above * (2 * square + 3 * cubic * above)
         pressure = np.exp(np.minimum(exponent, _STEEPEST))
@@ -71,15 +73,16 @@ class AsperityLaw:
         return float(-1 / self.coefficients[2, -1])
 
     def separation_at(self, pressure: float) -> float:
-        """ū, m, at which the asperities carry ``pressure`` (Pa); 0 if the table ends at a smaller pressure."""
-        wanted, levels = np.log(pressure), self.coefficients[3]
+        """ū, m, at which the asperities carry ``pressure`` (Pa, ≥ 0); 0 if the table ends at a smaller pressure."""
+        with np.errstate(all="ignore"):
+            wanted, levels = np.log(pressure), self.coefficients[3]
         if wanted <= levels[-1]:
             return float(self.separation[-1] + (wanted - levels[-1]) * -self.decay_length)
         return float(max(np.interp(-wanted, -levels, self.separation, left=0.0), 0.0))
 
 
 def asperity_law(
-    spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: ArrayLike = AREA_CORRECTION
+    spectrum: PowerSpectrum, skin: LayeredSkin, *, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityLaw:
     """Asperity law of a rough layered surface, from its mean separation (Sect. 5 and Sect. 6.2 of the paper).
 
@@ -95,6 +98,11 @@ def asperity_law(
     -------
     law : `AsperityLaw`, p in Pa against ū in m
 
+    Raises
+    ------
+    InputError
+        if a parameter is impossible, or contact so complete that nothing tells separations apart
+
     Notes
     -----
     The interpolated pressure differs from the inverted mean separation by less than 2e-4 of itself.
@@ -107,15 +115,16 @@ def asperity_law(
     --------
     >>> import numpy as np
     >>> from skinbayes.roughness import named_surface
-    >>> law = asperity_law(named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6))
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> law = asperity_law(named_surface("paper_reference"), wet)
     >>> print(law(np.array([14e-6]))[0].round(0))
     [6290.]
     """
-    return law_of_table(*asperity_table(spectrum, skin, area_correction))
+    return law_of_table(*asperity_table(spectrum, skin, area_correction=area_correction))
 
 
 def asperity_table(
-    spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: ArrayLike = AREA_CORRECTION
+    spectrum: PowerSpectrum, skin: LayeredSkin, *, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityTable:
     """Mean separations and asperity pressures of many surfaces at once (Sect. 5 and Sect. 6.2 of the paper).
 
@@ -136,18 +145,25 @@ def asperity_table(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> table = asperity_table(named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6))
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> table = asperity_table(named_surface("paper_reference"), wet)
     >>> print(table.separation.shape, f"{table.separation[-1]:.2e} m at {np.exp(table.log_pressure[-1]):.0e} Pa")
     (160,) 3.64e-04 m at 2e-07 Pa
     """
-    scale = np.log(np.asarray(stress_variance(spectrum, skin))) / 2
+    scale = np.log(np.asarray(twice_stress_variance(spectrum, skin))) / 2
     gamma = np.asarray(area_correction, dtype=np.float64)
     batch = np.broadcast_shapes(scale.shape, gamma.shape)
     log_pressure = (
         np.linspace(np.log(_HIGHEST), np.log(_LOWEST), _COUNT) + np.broadcast_to(scale, batch)[..., None]
     )
-    separation = np.asarray(mean_separation(np.exp(log_pressure), spectrum, skin, gamma))
+    separation = np.asarray(mean_separation(np.exp(log_pressure), spectrum, skin=skin, area_correction=gamma))
     return AsperityTable(separation, log_pressure)
+
+
+def is_lawful(separation: FloatArray, log_pressure: FloatArray) -> bool:
+    """Tell whether an asperity law passes through points ū, m, and ln p, p in Pa, each of shape ``(M,)``."""
+    points = np.array([separation, -log_pressure])
+    return points.shape[-1] > 1 and bool(np.isfinite(points).all() and (np.diff(points) > 0).all())
 
 
 def law_of_table(separation: FloatArray, log_pressure: FloatArray) -> AsperityLaw:
@@ -162,6 +178,11 @@ def law_of_table(separation: FloatArray, log_pressure: FloatArray) -> AsperityLa
     -------
     law : `AsperityLaw`, p in Pa against ū in m
 
+    Raises
+    ------
+    InputError
+        if there are fewer than two points, or if they are not finite, or not in this order
+
     References
     ----------
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6.2).
@@ -173,6 +194,10 @@ def law_of_table(separation: FloatArray, log_pressure: FloatArray) -> AsperityLa
     >>> print(law_of_table(u, 10 - u / 1e-6)(np.array([3e-6, 7e-6]))[0].round(3))
     [1096.633   20.086]
     """
+    if not is_lawful(separation, log_pressure):
+        raise InputError(
+            "An asperity law needs at least two finite points, with separations that rise and pressures that fall."
+        )
     curve = PchipInterpolator(separation, log_pressure)
     last = (log_pressure[-1] - log_pressure[-2]) / (separation[-1] - separation[-2])
     tail = np.array([[0.0], [0.0], [last], [log_pressure[-1]]])

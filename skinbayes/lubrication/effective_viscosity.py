@@ -14,7 +14,7 @@ from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.errors import InputError
-from skinbayes.lubrication.asperities import asperity_law
+from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES, lubricated_films
 from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import FlowFactors
@@ -46,8 +46,8 @@ def stribeck_curve_of_liquid(
     *,
     normal_force: float,
     sphere_radius: float,
-    skin: LayeredSkin,
     spectrum: PowerSpectrum,
+    skin: LayeredSkin,
     frictional_shear_stress: float,
     area_correction: float = AREA_CORRECTION,
     velocity_shift_factor: float = 1.0,
@@ -63,12 +63,12 @@ def stribeck_curve_of_liquid(
 
     Parameters
     ----------
-    sliding_speed : v, m/s, > 0, shape ``(K,)``
+    sliding_speed : v, m/s, ≥ 0, shape ``(K,)``; at 0 there is boundary friction
     flow_curve : η against shear rate; outside the measured rates the viscosity at the nearer end is used
     normal_force : F_N, N, > 0
     sphere_radius : R, m, > 0
-    skin : moduli in Pa, thickness in m, one skin
     spectrum : power spectrum, C in m^4, one surface
+    skin : moduli in Pa, thickness in m, one skin
     frictional_shear_stress : σ_f, Pa, ≥ 0
     area_correction : γ, dimensionless, 0 < γ ≤ 1
     velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
@@ -84,7 +84,7 @@ def stribeck_curve_of_liquid(
     Raises
     ------
     InputError
-        if a speed is not a finite number > 0
+        if a speed is not a finite number ≥ 0
 
     Notes
     -----
@@ -98,26 +98,30 @@ def stribeck_curve_of_liquid(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    >>> surface = named_surface("paper_reference")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> honey = FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])
-    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, sphere_radius=8e-3, normal_force=0.2,
-    ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
+    >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, normal_force=0.2, sphere_radius=8e-3,
+    ...     spectrum=surface, skin=wet, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3), viscosity.viscosity.round(1))
     [0.108 0.325] [25.  24.6]
     """
     speed = np.atleast_1d(np.asarray(sliding_speed, dtype=np.float64))
-    wrong = np.flatnonzero(~(np.isfinite(speed) & (speed > 0)))
+    wrong = np.flatnonzero(~(np.isfinite(speed) & (speed >= 0)))
     if wrong.size:
         raise InputError(
-            f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number > 0 m/s."
+            f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number >= 0 m/s."
         )
-    liquids = liquid_rows([flow_curve] * speed.size)
+    liquids = liquid_rows([flow_curve]).at(np.zeros(speed.size, dtype=np.intp))
     modulus = float(reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk))
-    cylinder = cylinder_of_sphere(normal_force, sphere_radius, modulus)
-    law = asperity_law(spectrum, skin, area_correction)
+    cylinder = cylinder_of_sphere(normal_force, sphere_radius, reduced_modulus=modulus)
+    table = asperity_table(spectrum, skin, area_correction=area_correction)
+    law = law_of_table(*table) if is_lawful(*table) else None
 
     def shear_rate(log_viscosity: FloatArray) -> FloatArray:
         """ln v/u."""
+        if law is None:
+            return np.full(speed.shape, np.nan)
         products = np.exp(log_viscosity) * speed * velocity_shift_factor
         films = lubricated_films(
             products,
@@ -128,7 +132,8 @@ def stribeck_curve_of_liquid(
             flow_factors=flow_factors,
             nodes=nodes,
         )
-        return np.asarray(np.log(speed / films.central_film))
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(speed / films.central_film))
 
     log_viscosity = _fixed_point(shear_rate, liquids)
     rate = np.exp(shear_rate(log_viscosity))

@@ -15,6 +15,7 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.line_contact import HertzLine, line_contact
+from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.drag import drag_integrals
 from skinbayes.lubrication.flow_factors import FlowFactors, TrivialFlowFactors
@@ -31,6 +32,8 @@ _WEAKEST = (
     1e-7  # of the squared roughness: below this λ the fluid carries about that share and all is linear in λ
 )
 
+_FASTEST = 1e10  # λ beyond which the parabola drowns in rounding
+
 
 class LubricatedFilms(NamedTuple):
     """Films under a cylinder at K speeds; x = 0 is the middle of the cylinder and the fluid enters at negative x.
@@ -41,9 +44,9 @@ class LubricatedFilms(NamedTuple):
     separation : mean separation ū(x), m, shape ``(K, N)``
     fluid_pressure : p_f(x), Pa, shape ``(K, N)``
     asperity_pressure : p_a(x), Pa, shape ``(K, N)``
-    asperity_load_share : load carried by asperities over load, dimensionless, shape ``(K,)``
     couette : friction coefficient of the shear flow, ∫φ ηv/u dx/f_N, dimensionless, shape ``(K,)``
     pressure_flow : friction coefficient of the pressure flow, ½∫u dp_f/f_N, dimensionless, shape ``(K,)``
+    asperity_load_share : load carried by asperities over load, dimensionless, shape ``(K,)``
     minimum_film : smallest ū, m, shape ``(K,)``
     central_film : ū under the middle of the cylinder, m, shape ``(K,)``
     lubrication_number : λ = 6 η v Rc²/(b³ p_H), dimensionless, shape ``(K,)``
@@ -54,15 +57,16 @@ class LubricatedFilms(NamedTuple):
     separation: FloatArray
     fluid_pressure: FloatArray
     asperity_pressure: FloatArray
-    asperity_load_share: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
+    asperity_load_share: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
     lubrication_number: FloatArray
     load_weight: FloatArray
 
 
+@np.errstate(all="ignore")
 def lubricated_films(
     speed_viscosity_product: ArrayLike,
     *,
@@ -82,18 +86,24 @@ def lubricated_films(
 
     Parameters
     ----------
-    speed_viscosity_product : η v, N/m, > 0, shape ``(K,)``; with a rheology η0 v
-    load_per_length : f_N, N/m
-    cylinder_radius : Rc, m
-    reduced_modulus : E* of the solid on the scale of the contact, Pa
+    speed_viscosity_product : η v, N/m, ≥ 0, shape ``(K,)``; with a rheology η0 v. At 0 asperities carry everything; smooth
+        surfaces have no film then.
+    load_per_length : f_N, N/m, > 0
+    cylinder_radius : Rc, m, > 0
+    reduced_modulus : E* of the solid on the scale of the contact, Pa, > 0
     asperities : p_a against ū, from `asperity_law`; None for smooth surfaces
     flow_factors : None for trivial ones
     rheology : viscosity against local shear rate v/u; None for a Newtonian liquid
-    nodes : number of places across the contact, dimensionless
+    nodes : number of places across the contact, dimensionless, ≥ 4
 
     Returns
     -------
-    films : `LubricatedFilms`; nan in rows where no film was found
+    films : `LubricatedFilms`; nan in rows where no film was found or an argument is impossible
+
+    Raises
+    ------
+    InputError
+        if there are fewer than four nodes
 
     Notes
     -----
@@ -102,7 +112,7 @@ def lubricated_films(
     the cavity. Nothing is said about the range of validity here; see `stribeck_curve`.
 
     Where λ is so small that the fluid carries less than about 1e-7 of the load, the fluid's part is scaled in proportion to
-    λ. Smooth surfaces need λ > 1e-6.
+    λ. Smooth surfaces need λ > 1e-6; beyond λ = 1e10 there is no film.
 
     References
     ----------
@@ -116,24 +126,31 @@ def lubricated_films(
     1.94e-04 m, 0.138
     """
     product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
-    hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus)
+    if nodes < 4:
+        raise InputError(f"nodes is {nodes}, but must be at least 4.")
+    hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus=reduced_modulus)
+    wanted = lubrication_number_per_product(cylinder_radius, hertz) * product
+    known = (wanted > 0 if asperities is None else wanted >= 0) & (wanted <= _FASTEST)
+    if not (known.any() and 0 < load_per_length < np.inf):
+        return _no_films(product.size, nodes)
     height = float(hertz.half_width**2 / cylinder_radius)
-    per_product = lubrication_number_per_product(cylinder_radius, hertz)
-    wanted = per_product * product
     law: Law = (
         _no_asperities if asperities is None else asperities.scaled(height, float(hertz.maximum_pressure))
     )
     rough, tail = (0.0, 0.0) if asperities is None else _roughness(law)
-    number = np.maximum(wanted, _WEAKEST * rough**2)
+    number = np.maximum(np.where(known, wanted, wanted[known].min()), _WEAKEST * rough**2)
     grid = grid_for(float(number.min()), float(number.max()), rough, tail, nodes)
-    transport = _transport(flow_factors, rheology, height, per_product)
-    states, _ = sweep(number, grid, law, transport, 1.5 + rough)
+    transport = _transport(
+        flow_factors, rheology, height, lubrication_number_per_product(cylinder_radius, hertz)
+    )
+    found, _ = sweep(number, grid, law, transport, 1.5 + rough)
 
+    states = [state if here else None for state, here in zip(found, known, strict=True)]
     missing = np.full(grid.position.size, np.nan)
     pressure = np.array([missing if state is None else state.pressure for state in states])
     approach = np.array([np.nan if state is None else state.approach for state in states])
     film = approach[:, None] + np.square(grid.position) / 2 - pressure @ grid.kernel.T
-    carried = law(film)[0]
+    carried = law(film)[0] + 0.0 * film
     fluid = pressure - carried
     speed = None if rheology is None else product / rheology.low_shear_viscosity
     drag = drag_integrals(grid, film, fluid, number, height, flow_factors, rheology, speed)
@@ -152,6 +169,12 @@ def lubricated_films(
         lubrication_number=wanted,
         load_weight=grid.weight * hertz.half_width,
     )
+
+
+def _no_films(count: int, nodes: int) -> LubricatedFilms:
+    """What is known of films that cannot be."""
+    place, row, table = (np.full(shape, np.nan) for shape in (nodes, count, (count, nodes)))
+    return LubricatedFilms(place, table, table, table, row, row, row, row, row, row, place)
 
 
 def lubrication_number_per_product(cylinder_radius: float, hertz: HertzLine) -> float:

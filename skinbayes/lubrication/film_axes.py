@@ -76,8 +76,8 @@ class Scales(NamedTuple):
 def unit_contact(poisson_ratio_bulk: float) -> tuple[float, float]:
     """ln b and ln Rc (m) of a ball of 1 m on tissue of E1 = 1 Pa under 1 N; b goes as (F R/E1)^(1/3), Rc as R."""
     modulus = reduced_modulus(1.0, poisson_ratio_bulk)
-    cylinder = cylinder_of_sphere(1.0, 1.0, modulus)
-    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, modulus)
+    cylinder = cylinder_of_sphere(1.0, 1.0, reduced_modulus=modulus)
+    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, reduced_modulus=modulus)
     return float(np.log(line.half_width)), float(np.log(cylinder.cylinder_radius))
 
 
@@ -104,7 +104,7 @@ def film_scales(log_parameters: Sequence[FloatArray], poisson_ratio_bulk: float)
     )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FilmAxes:
     """Axes of a table: linear combinations of the ln of the `FILM_PARAMETERS`, each scaled to −1 … 1.
 
@@ -194,8 +194,9 @@ def _combine(row: FloatArray, log_parameters: Sequence[FloatArray]) -> FloatArra
 def film_axes(
     ranges: Mapping[str, tuple[float, float]],
     poisson_ratio_bulk: float = 0.5,
-    largest_strain: float = np.inf,
+    *,
     counts: Mapping[str, int] | None = None,
+    largest_strain: float = np.inf,
     stress_scale: float | None = None,
 ) -> FilmAxes:
     """Axes for parameters that vary within ranges: as few as the similarity of the problem allows (Sect. 6 of the paper).
@@ -207,8 +208,8 @@ def film_axes(
     ----------
     ranges : smallest and largest value of each of the `FILM_PARAMETERS`, SI (Pa, m, N); equal for a fixed one
     poisson_ratio_bulk : ν1, dimensionless
-    largest_strain : b/Rc, dimensionless, beyond which no contact is wanted; it shortens the axis F R/E1
     counts : number of nodes of an axis, dimensionless, by its name; from the width of its range unless told otherwise
+    largest_strain : b/Rc, dimensionless, beyond which no contact is wanted; it shortens the axis F R/E1
     stress_scale : √V/(E0 h_rms), 1/m, of the rough surface; with it an axis ends where contact is fullest
 
     Returns
@@ -262,19 +263,19 @@ def film_axes(
     excluded = _complement(influence) @ _INVARIANTS
     wanted = dict(counts or {})
     axes = FilmAxes(
-        names,
-        combination / half[:, None],
-        (start + half) / half,
-        excluded,
-        excluded @ reference,
-        reference,
-        low,
-        high,
-        -1,
-        1.0,
-        np.zeros(6),
-        0.0,
-        tuple(
+        names=names,
+        combination=combination / half[:, None],
+        offset=(start + half) / half,
+        excluded=excluded,
+        excluded_at=excluded @ reference,
+        reference=reference,
+        low=low,
+        high=high,
+        ended=-1,
+        side=1.0,
+        end=np.zeros(6),
+        end_offset=0.0,
+        counts=tuple(
             wanted.get(name, _FIRST_NODES + int(np.ceil(2 * width * density[place])))
             for name, width, place in zip(names, half.tolist(), order, strict=True)
         ),

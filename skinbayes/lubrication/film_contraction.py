@@ -183,7 +183,7 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     columns = ANCHORS + outputs * (table.speeds + 2)
     coordinates = axes.coordinates(log_parameters)
     common = [place for place, part in enumerate(coordinates) if part.shape[1] == 1]
-    rows = [place for place, part in enumerate(coordinates) if part.shape[1] > 1]
+    rows = [place for place, part in enumerate(coordinates) if part.shape[1] != 1]
     coefficients = table.coefficients[..., :columns]
     order = common + rows
     if order != sorted(order):
@@ -202,9 +202,9 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
         weights = _weights(
             [held[place] for place in rows], [counts[place] for place in rows], vectors, number
         )
-        found = np.matmul(weights, found.reshape(vectors, -1, columns))
+        found = np.matmul(weights, found.reshape(vectors, found.shape[-1] // columns, columns))
     flat = found.reshape(-1)
-    start = np.arange(0, flat.size, columns).reshape(vectors, -1)
+    start = np.arange(0, flat.size, columns).reshape(found.shape[:2])
     return ContractedFilms(
         flat,
         start,
@@ -227,5 +227,6 @@ def _weights(coordinates: list[FloatArray], counts: list[int], vectors: int, row
             terms[..., 1] = coordinate
         for degree in range(2, count):
             terms[..., degree] = 2 * coordinate * terms[..., degree - 1] - terms[..., degree - 2]
-        weights = (weights[..., :, None] * terms[..., None, :]).reshape(vectors, rows, -1)
+        outer = weights[..., :, None] * terms[..., None, :]
+        weights = outer.reshape(vectors, rows, weights.shape[-1] * count)
     return weights

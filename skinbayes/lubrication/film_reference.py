@@ -94,7 +94,7 @@ def smooth_films() -> SmoothFilms:
 def _outputs(log_number: FloatArray) -> FloatArray:
     """ln of the four outputs, shape ``(4, K)``; a ball with b/Rc = 1 makes films and friction those without dimension."""
     modulus = 4 / np.pi
-    hertz = line_contact(1.0, 1.0, modulus)
+    hertz = line_contact(1.0, 1.0, reduced_modulus=modulus)
     products = np.exp(log_number) / lubrication_number_per_product(1.0, hertz)
     films = lubricated_films(
         products, cylinder_radius=1.0, load_per_length=1.0, reduced_modulus=modulus, nodes=_NODES

@@ -12,7 +12,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw, asperity_table, law_of_table
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
@@ -64,16 +64,28 @@ class Surface:
             ranges["young_modulus_bulk"][1],
             ranges["layer_thickness"][0],
         )
-        skin = LayeredSkin(layer, bulk, self.poisson_ratio_layer, self.poisson_ratio_bulk, thickness)
-        return float(np.sqrt(stress_variance(self.spectrum, skin)) / (layer * self.rms_height))
+        skin = LayeredSkin(
+            young_modulus_layer=layer,
+            young_modulus_bulk=bulk,
+            poisson_ratio_layer=self.poisson_ratio_layer,
+            poisson_ratio_bulk=self.poisson_ratio_bulk,
+            layer_thickness=thickness,
+        )
+        return float(np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self.rms_height))
 
     def material(self, log_parameters: FloatArray) -> Material:
-        """Asperity law and stress variance at parameters given by their ln, SI, shape ``(6,)``."""
+        """Asperity law and twice the stress variance at parameters given by their ln, SI, shape ``(6,)``."""
         layer, bulk, height, _, _, thickness = np.exp(log_parameters).tolist()
-        skin = LayeredSkin(layer, bulk, self.poisson_ratio_layer, self.poisson_ratio_bulk, thickness)
-        law = law_of_table(*asperity_table(self.spectrum, skin, self.area_correction))
-        variance = float(stress_variance(self.spectrum, skin))
-        return Material(law, variance, layer * self.rms_height, layer / bulk, thickness, height)
+        skin = LayeredSkin(
+            young_modulus_layer=layer,
+            young_modulus_bulk=bulk,
+            poisson_ratio_layer=self.poisson_ratio_layer,
+            poisson_ratio_bulk=self.poisson_ratio_bulk,
+            layer_thickness=thickness,
+        )
+        law = law_of_table(*asperity_table(self.spectrum, skin, area_correction=self.area_correction))
+        twice_variance = float(twice_stress_variance(self.spectrum, skin))
+        return Material(law, twice_variance, layer * self.rms_height, layer / bulk, thickness, height)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +95,7 @@ class Material:
     Attributes
     ----------
     law : p_a (Pa) against ū (m) at the rms height of the spectrum
-    variance : V there, Pa²
+    twice_variance : V there, Pa²
     stiffness : E0 h_rms there, Pa m
     ratio : E0/E1, dimensionless
     thickness : d, m
@@ -91,7 +103,7 @@ class Material:
     """
 
     law: AsperityLaw
-    variance: float
+    twice_variance: float
     stiffness: float
     ratio: float
     thickness: float
@@ -106,7 +118,7 @@ class Ball:
     ----------
     surface : what was given
     law : p_a (Pa) against ū (m)
-    variance : V, Pa²
+    twice_variance : V, Pa²
     stiffness : E0 h_rms, Pa m
     cylinder_radius : Rc, m
     load_per_length : f_N, N/m
@@ -115,7 +127,7 @@ class Ball:
 
     surface: Surface
     law: AsperityLaw
-    variance: float
+    twice_variance: float
     stiffness: float
     cylinder_radius: float
     load_per_length: float
@@ -129,7 +141,7 @@ class Ball:
         InputError
             if no film was found
         """
-        hertz = line_contact(self.load_per_length, self.cylinder_radius, self.reduced_modulus)
+        hertz = line_contact(self.load_per_length, self.cylinder_radius, reduced_modulus=self.reduced_modulus)
         height = float(hertz.half_width**2 / self.cylinder_radius)
         slope = float(hertz.half_width / self.cylinder_radius)
         number = np.exp(log_number)
@@ -143,7 +155,9 @@ class Ball:
                 asperities=self.law,
                 nodes=nodes + more,
             )
-            area = relative_contact_area(films.asperity_pressure, self.variance, self.surface.area_correction)
+            area = relative_contact_area(
+                films.asperity_pressure, self.twice_variance, area_correction=self.surface.area_correction
+            )
             # 1 − (1 − share) has no digits where the share is small
             carried = films.asperity_pressure @ films.load_weight / self.load_per_length
             share = np.where(films.asperity_load_share > 0.5, films.asperity_load_share, carried)
@@ -167,7 +181,7 @@ class Ball:
 
     def anchors(self) -> tuple[float, float]:
         """ln λ at which asperities carry half of the load, and how much further on they carry 1e-3 of it."""
-        hertz = line_contact(self.load_per_length, self.cylinder_radius, self.reduced_modulus)
+        hertz = line_contact(self.load_per_length, self.cylinder_radius, reduced_modulus=self.reduced_modulus)
         height = float(hertz.half_width**2 / self.cylinder_radius)
         law = self.law.scaled(height, float(hertz.maximum_pressure))
         tail = np.log(law.decay_length)
@@ -186,13 +200,13 @@ def ball_at(surface: Surface, material: Material, log_parameters: FloatArray) ->
     """Ball at parameters given by their ln (SI, shape ``(6,)``), on a material with the same E0/E1 and d."""
     layer, bulk, height, radius, force, _ = np.exp(log_parameters).tolist()
     modulus = float(reduced_modulus(bulk, surface.poisson_ratio_bulk))
-    cylinder = cylinder_of_sphere(force, radius, modulus)
+    cylinder = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
     stiffness = layer * height
     times = stiffness / material.stiffness
     return Ball(
         surface,
         material.law.scaled(surface.rms_height / height, 1 / times),
-        material.variance * times * times,
+        material.twice_variance * times * times,
         stiffness,
         float(cylinder.cylinder_radius),
         float(cylinder.load_per_length),

@@ -24,28 +24,28 @@ SLOWEST, FASTEST = -1.3, 1.35
 """Ends of the speeds in the unit of a material. Asperities carry half of the load at 0 and 1e-3 of it at 1."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FilmTable:
     """Films of a rough ball as functions of λ and the axes: Chebyshev polynomials of the axes, cubic splines of ln λ.
 
     Attributes
     ----------
     axes : what varies, and within which ranges
+    poisson_ratio_bulk : ν1, dimensionless
     coefficients : dimensionless, shape ``(n1, …, nA, 2 + 6 (S + 2))``; Chebyshev coefficients along the axes of the
         anchors and of the B-spline coefficients of the six outputs
     speeds : S, number of speeds, dimensionless
     smooth : films of the smooth ball, which the outputs but the boundary term and the load share are relative to
-    poisson_ratio_bulk : ν1, dimensionless
     held_out : median, 99th percentile and largest relative error of the friction coefficient at random places,
         dimensionless, shape ``(3,)``
     held_out_count : number of these places, dimensionless
     """
 
     axes: FilmAxes
+    poisson_ratio_bulk: float
     coefficients: FloatArray
     speeds: int
     smooth: SmoothFilms
-    poisson_ratio_bulk: float
     held_out: FloatArray
     held_out_count: int
 
@@ -100,13 +100,13 @@ class FilmTable:
                 parts["smooth_coefficients"], float(metadata["smooth_lowest"]), float(metadata["smooth_step"])
             )
             return cls(
-                axes,
-                np.ascontiguousarray(parts["coefficients"]),
-                int(metadata["speeds"]),
-                smooth,
-                float(metadata["poisson_ratio_bulk"]),
-                parts["held_out"],
-                int(metadata["held_out_count"]),
+                axes=axes,
+                coefficients=np.ascontiguousarray(parts["coefficients"]),
+                speeds=int(metadata["speeds"]),
+                smooth=smooth,
+                poisson_ratio_bulk=float(metadata["poisson_ratio_bulk"]),
+                held_out=parts["held_out"],
+                held_out_count=int(metadata["held_out_count"]),
             )
         except KeyError as missing:
             raise InputError(f"A table of films lacks {missing.args[0]}.") from None

@@ -40,6 +40,7 @@ _CHECK_NODES = 128
 def build_film_table(
     ranges: Mapping[str, tuple[float, float]],
     spectrum: PowerSpectrum,
+    *,
     poisson_ratio_layer: float = 0.5,
     poisson_ratio_bulk: float = 0.5,
     area_correction: float = AREA_CORRECTION,
@@ -102,7 +103,13 @@ def build_film_table(
     () True False
     """
     surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
-    axes = film_axes(ranges, poisson_ratio_bulk, largest_strain, counts, surface.stress_scale(ranges))
+    axes = film_axes(
+        ranges,
+        poisson_ratio_bulk,
+        largest_strain=largest_strain,
+        counts=counts,
+        stress_scale=surface.stress_scale(ranges),
+    )
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
     sweeps = len(places) + len(coarse_places) + checked
@@ -126,13 +133,13 @@ def build_film_table(
         splines[:, (0, 2, 3, 4), -3:] = 0.0
         terms = chebyshev_coefficients(splines.reshape(*axes.counts, -1))
         table = FilmTable(
-            axes,
-            np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
-            speeds,
-            smooth,
-            poisson_ratio_bulk,
-            np.full(3, np.nan),
-            checked,
+            axes=axes,
+            coefficients=np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
+            speeds=speeds,
+            smooth=smooth,
+            poisson_ratio_bulk=poisson_ratio_bulk,
+            held_out=np.full(3, np.nan),
+            held_out_count=checked,
         )
         return (
             replace(table, held_out=_check(table, materials, checked, solve, largest_strain))
@@ -222,7 +229,7 @@ def _check(
     balls = [materials.ball(point) for point in drawn]
     # σ_f for which μ of small contacts is about 1 at rest
     shear_stress = np.array(
-        [np.sqrt(np.pi * materials.surface.area_correction * ball.variance) / 2 for ball in balls]
+        [np.sqrt(np.pi * materials.surface.area_correction * ball.twice_variance) / 2 for ball in balls]
     )
     found = solve("check", partial(_outputs, nodes=_CHECK_NODES), zip(balls, number[:, None], strict=True))
     outputs = found[..., 0]
@@ -235,7 +242,11 @@ def _check(
     parameters = dict(zip(FILM_PARAMETERS, np.exp(drawn.T), strict=True))
     products = np.exp(number - scales.number_per_product)
     tabulated = tabulated_friction(
-        table, products, parameters, shear_stress, largest_strain=largest_strain
+        table,
+        products,
+        parameters=parameters,
+        frictional_shear_stress=shear_stress,
+        largest_strain=largest_strain,
     ).friction_coefficient
     errors = np.abs(tabulated / direct - 1)
     return np.array([np.quantile(errors, 0.5), np.quantile(errors, 0.99), errors.max()])

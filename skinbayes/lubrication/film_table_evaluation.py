@@ -31,6 +31,7 @@ _POINTS = 8192  # of vectors times rows worked on at a time: arrays stay in the 
 _COEFFICIENTS = (
     1 << 21
 )  # numbers, at most, that the axes are summed up to at a time: 32 vectors of 165 rows in one piece
+_STILL = -1e4  # ln of a speed of 0
 _FRICTION, _EVERYTHING = (
     (BOUNDARY, COUETTE, PRESSURE_FLOW),
     (CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE),
@@ -46,9 +47,9 @@ class TabulatedFriction(NamedTuple):
     boundary : shear stress of the areas of real contact, dimensionless
     couette : shear flow of the liquid, dimensionless
     pressure_flow : pressure flow of the liquid, dimensionless
-    central_film : mean separation under the middle of the ball, m; nan if not asked for
-    minimum_film : smallest mean separation, m; nan if not asked for
     asperity_load_share : share of the load that asperities carry, dimensionless; nan if not asked for
+    minimum_film : smallest mean separation, m; nan if not asked for
+    central_film : mean separation under the middle of the ball, m; nan if not asked for
     strain : b/Rc of the Hertz contact, dimensionless
     outside_table : the table does not hold the parameters, or λ is above 2e4
     too_strained : b/Rc is above the largest strain
@@ -59,9 +60,9 @@ class TabulatedFriction(NamedTuple):
     boundary: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    central_film: FloatArray
-    minimum_film: FloatArray
     asperity_load_share: FloatArray
+    minimum_film: FloatArray
+    central_film: FloatArray
     strain: FloatArray
     outside_table: NDArray[np.bool_]
     too_strained: NDArray[np.bool_]
@@ -71,6 +72,7 @@ class TabulatedFriction(NamedTuple):
 def tabulated_friction(
     table: FilmTable,
     speed_viscosity_product: ArrayLike,
+    *,
     parameters: Mapping[str, ArrayLike],
     frictional_shear_stress: ArrayLike,
     velocity_shift_factor: ArrayLike = 1.0,
@@ -83,7 +85,7 @@ def tabulated_friction(
     Parameters
     ----------
     table : `FilmTable`
-    speed_viscosity_product : ηv, N/m, > 0, shape ``(N,)`` or ``(B, N)``, or a scalar
+    speed_viscosity_product : ηv, N/m, ≥ 0, shape ``(N,)`` or ``(B, N)``, or a scalar; at 0 there is boundary friction
     parameters : `FILM_PARAMETERS` by name, SI (Pa, m, N), each a scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the theory is evaluated at a ηv
@@ -111,7 +113,8 @@ def tabulated_friction(
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
     >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
-    >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], ball, 15e6).friction_coefficient.round(3))
+    >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], parameters=ball,
+    ...     frictional_shear_stress=15e6).friction_coefficient.round(3))
     [1.423 0.915 0.109]
     """
     arguments = _arguments(
@@ -124,7 +127,7 @@ def tabulated_friction(
         return _friction(
             films,
             logs[0] + logs[2],
-            np.log(product * shift),
+            _logarithm(product) + np.where(shift > 0, np.log(shift), np.nan),
             stress,
             everything,
             thickest_film,
@@ -137,6 +140,7 @@ def tabulated_friction(
 def tabulated_friction_of_liquids(
     table: FilmTable,
     sliding_speed: ArrayLike,
+    *,
     liquids: LiquidRows,
     parameters: Mapping[str, ArrayLike],
     frictional_shear_stress: ArrayLike,
@@ -155,7 +159,7 @@ def tabulated_friction_of_liquids(
     Parameters
     ----------
     table : `FilmTable`
-    sliding_speed : v, m/s, > 0, shape ``(N,)`` or ``(B, N)``
+    sliding_speed : v, m/s, ≥ 0, shape ``(N,)`` or ``(B, N)``; at 0 there is boundary friction
     liquids : the liquid of each of N rows, from `liquid_rows`
     parameters : `FILM_PARAMETERS` by name, SI (Pa, m, N), each a scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
@@ -189,7 +193,8 @@ def tabulated_friction_of_liquids(
     >>> ranges = {name: (value, value) for name, value in ball.items()}
     >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
     >>> liquids = liquid_rows([FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])] * 2)
-    >>> friction, viscosity = tabulated_friction_of_liquids(table, [1e-3, 1e-2], liquids, ball, 15e6)
+    >>> friction, viscosity = tabulated_friction_of_liquids(table, [1e-3, 1e-2], liquids=liquids,
+    ...     parameters=ball, frictional_shear_stress=15e6)
     >>> print(friction.friction_coefficient.round(3), viscosity.viscosity.round(1), viscosity.unmeasured)
     [0.108 0.325] [25.  24.6] [False False]
     """
@@ -203,8 +208,8 @@ def tabulated_friction_of_liquids(
     def part(vectors: slice) -> tuple[FloatArray | NDArray[np.bool_], ...]:
         logs, (speed, stress, shift) = arguments.part(vectors)
         films = contract(table, logs, 6 if everything else 4)
-        log_speed = np.log(speed)
-        log_shift = np.log(shift)
+        log_speed = _logarithm(speed)
+        log_shift = np.where(shift > 0, np.log(shift), np.nan)
         log_viscosity, log_rate = viscosity_of_films(films, log_speed, log_shift, liquids)
         log_product = log_viscosity + log_speed + log_shift
         friction = _friction(
@@ -246,9 +251,11 @@ class _Arguments:
     ) -> list[Any]:
         vectors, rows = self.shape
         by_row = any(x.shape[1] > 1 for x in self.logs)
-        step = max(1, min(_POINTS // rows, _COEFFICIENTS // (columns * (rows if by_row else 1))))
+        step = max(
+            1, min(_POINTS // max(rows, 1), _COEFFICIENTS // (columns * (max(rows, 1) if by_row else 1)))
+        )
         with np.errstate(all="ignore"):
-            parts = [function(slice(first, first + step)) for first in range(0, vectors, step)]
+            parts = [function(slice(first, first + step)) for first in range(0, max(vectors, 1), step)]
         whole = parts[0] if len(parts) == 1 else [np.concatenate(x) for x in zip(*parts, strict=True)]
         return [np.broadcast_to(x, self.shape).reshape(self.given)[()] for x in whole]
 
@@ -261,6 +268,11 @@ def _arguments(parameters: Mapping[str, ArrayLike], *others: ArrayLike) -> _Argu
         )
     named = [np.asarray(parameters[name], dtype=np.float64) for name in FILM_PARAMETERS]
     return _Arguments(named, [np.asarray(x, dtype=np.float64) for x in others])
+
+
+def _logarithm(values: FloatArray) -> FloatArray:
+    """ln of speeds; that of 0 is so far below any other that exp of it is 0, but leaves arithmetic sound."""
+    return np.maximum(np.log(values), _STILL)
 
 
 def _friction(
@@ -277,7 +289,7 @@ def _friction(
     log_number = log_product + scales.number_per_product
     strained = scales.strain > np.log(largest_strain)
     beyond = log_number + 2 * scales.strain > np.log(thickest_film)
-    held = films.inside & (log_number <= films.smooth.highest)
+    held = films.inside & ~(log_number > films.smooth.highest)
     good = held & ~strained & ~beyond & np.isfinite(log_number) & (shear_stress >= 0)
     log_number = np.where(good, log_number, films.anchor)
     wanted = _EVERYTHING if everything else _FRICTION
@@ -292,11 +304,11 @@ def _friction(
         boundary,
         couette,
         pressure,
-        np.exp(logs[CENTRAL] + scales.height) + missing if everything else nothing,
+        np.minimum(np.exp(logs[SHARE]), 1.0) + missing if everything else nothing,
         np.exp(logs[MINIMUM] + scales.height) + missing if everything else nothing,
-        np.exp(logs[SHARE]) + missing if everything else nothing,
+        np.exp(logs[CENTRAL] + scales.height) + missing if everything else nothing,
         np.broadcast_to(np.exp(scales.strain), good.shape),
-        ~held & ~np.isnan(log_number),
+        ~held,
         np.broadcast_to(strained, good.shape),
         beyond,
     )

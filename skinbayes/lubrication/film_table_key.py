@@ -22,6 +22,7 @@ _PLACES = 257  # of the band at which the spectrum is compared
 def film_table_key(
     ranges: Mapping[str, tuple[float, float]],
     spectrum: PowerSpectrum,
+    *,
     poisson_ratio_layer: float = 0.5,
     poisson_ratio_bulk: float = 0.5,
     area_correction: float = AREA_CORRECTION,
@@ -70,7 +71,13 @@ def film_table_key(
     {'young_modulus_bulk': 7, 'rms_height': 5}
     """
     surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
-    axes = film_axes(ranges, poisson_ratio_bulk, largest_strain, counts, surface.stress_scale(ranges))
+    axes = film_axes(
+        ranges,
+        poisson_ratio_bulk,
+        largest_strain=largest_strain,
+        counts=counts,
+        stress_scale=surface.stress_scale(ranges),
+    )
     ends = float(spectrum.wavevector_min), float(spectrum.wavevector_max)
     power = spectrum.power(np.geomspace(*ends, _PLACES)) / surface.rms_height**2
     return {

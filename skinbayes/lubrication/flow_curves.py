@@ -15,7 +15,7 @@ from skinbayes.lubrication.rheology import FlowCurve
 _CELLS = 512  # of each curve; ln η between the points of a measured curve then differs by less than 1e-5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class LiquidRows:
     """The liquid of each of N rows, by its measured flow curve.
 
@@ -119,13 +119,13 @@ def liquid_rows(flow_curves: Sequence[FlowCurve]) -> LiquidRows:
     flat = np.concatenate([np.array(part) for part in cubics], axis=1)
     least, most = np.array(extremes).T
     return LiquidRows(
-        liquid,
-        ends[liquid, 0],
-        ends[liquid, 1],
-        least[liquid],
-        most[liquid],
-        (_CELLS / (ends[:, 1] - ends[:, 0]))[liquid],
-        np.array(falling)[liquid],
-        liquid * _CELLS,
-        (flat[0], flat[1], flat[2], flat[3]),
+        liquid=liquid,
+        lowest=ends[liquid, 0],
+        highest=ends[liquid, 1],
+        least=least[liquid],
+        most=most[liquid],
+        steps_per_unit=(_CELLS / (ends[:, 1] - ends[:, 0]))[liquid],
+        falling=np.array(falling)[liquid],
+        start=liquid * _CELLS,
+        cubics=(flat[0], flat[1], flat[2], flat[3]),
     )

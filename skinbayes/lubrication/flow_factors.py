@@ -14,6 +14,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 
 
 class FrictionFactors(NamedTuple):
@@ -69,6 +70,11 @@ class PatirCheng:
     ----------
     rms_height : h_rms of the undeformed surface, m, > 0
 
+    Raises
+    ------
+    InputError
+        if it is not a finite number > 0
+
     References
     ----------
     Patir & Cheng, J. Lubr. Technol. 100 (1978) 12, doi 10.1115/1.3453177 (pressure flow).
@@ -82,6 +88,10 @@ class PatirCheng:
     """
 
     rms_height: float
+
+    def __post_init__(self) -> None:
+        if not 0 < self.rms_height < np.inf:
+            raise InputError(f"rms_height is {self.rms_height:g} m, but must be a finite number > 0 m.")
 
     def flow(self, separation: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """φ_p (dimensionless), dφ_p/dū (1/m), Φ_s (m) and dΦ_s/dū (dimensionless) at ū in m."""
@@ -114,4 +124,4 @@ def _shear_factor(z: FloatArray) -> FloatArray:
     open_ = (1 - far**2) ** 3 * np.log((far + 1) / (far - 1)) + far / 15 * (66 + far**2 * (30 * far**2 - 80))
     # beyond z = 10 the closed form loses its digits and 1 + ⟨δ²⟩/ū² + … is as good; ⟨δ²⟩ = h_rms²
     factor = np.where(z <= 1, near * close, far * open_) * 35 / 32
-    return np.where(z <= 10, factor, 1 + 1 / (9 * z * z))
+    return np.where(z <= 10, factor, 1 + 1 / (9 * np.clip(z, 1.0, 1e100) ** 2))

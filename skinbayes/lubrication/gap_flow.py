@@ -13,12 +13,14 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.gaps import gap_distribution
 from skinbayes.contact.layered import LayeredSkin
-from skinbayes.contact.variance import stress_variance
+from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.errors import InputError
 from skinbayes.lubrication.flow_factors import FrictionFactors
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _GAPS = 300
+_ROUNDING = 1e-9  # by which shares may exceed the whole
 # over √V; ū falls by decades in the first part and rises in even steps in the second
 _PRESSURES = np.concatenate([np.geomspace(0.3, 1e-9, 28), np.geomspace(1e-10, 1e-60, 24)])
 
@@ -51,11 +53,12 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
     Parameters
     ----------
     gap : u where the surfaces do not touch, m, > 0, shape ``(K,)``
-    probability : share of the nominal area with that gap, dimensionless, shape ``(K,)``; what is missing to 1 is contact
+    probability : share of the nominal area with that gap, dimensionless, ≥ 0, shape ``(K,)``; what is missing to 1 is contact
 
     Returns
     -------
-    factors : `GapFactors`; φ_p = 0 and φ_fp = 0 where contact covers half of the area or more, Φ_s = ū then
+    factors : `GapFactors`; φ_p = 0 and φ_fp = 0 where contact covers half of the area or more, Φ_s = ū then; nan if an
+        argument is impossible
 
     Notes
     -----
@@ -75,6 +78,9 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
     0.8381 2.388e-07 1.279 0.8408
     """
     u, share = np.asarray(gap, dtype=np.float64), np.asarray(probability, dtype=np.float64)
+    if not (np.isfinite(u) & (u > 0) & (share >= 0)).all() or share.sum() > 1 + _ROUNDING:
+        return GapFactors(np.nan, np.nan, np.nan, np.nan)
+    u, share = u[share > 0], share[share > 0]
     mean = float(share @ u)
     relative = u / mean
     cube, contact = relative**3, 1 - float(share.sum())
@@ -131,7 +137,7 @@ class TabulatedFlowFactors:
             value[..., 0],
             slope[..., 0] / place,
             shear * separation,
-            shear + shear_slope * separation / place,
+            shear + shear_slope,  # no slope beyond the ends, ū is the place elsewhere
         )
 
     def friction(self, separation: FloatArray) -> FrictionFactors:
@@ -143,6 +149,7 @@ class TabulatedFlowFactors:
 def tabulated_flow_factors(
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
+    *,
     area_correction: float = AREA_CORRECTION,
     smallest_gap: float | None = None,
 ) -> TabulatedFlowFactors:
@@ -155,11 +162,16 @@ def tabulated_flow_factors(
     spectrum : power spectrum, C in m^4, one surface
     skin : moduli in Pa, thickness in m, one skin
     area_correction : γ, dimensionless, 0 < γ ≤ 1
-    smallest_gap : gaps below count as contact, m; None for a hundredth of the rms height, as Patir and Cheng have it
+    smallest_gap : gaps below count as contact, m, > 0; None for a hundredth of the rms height, as Patir and Cheng have it
 
     Returns
     -------
     factors : `TabulatedFlowFactors` over ū in m, from ten times the smallest gap to where the surfaces are as good as smooth
+
+    Raises
+    ------
+    InputError
+        if a parameter is impossible, or hardly a gap is wider than ten times the smallest
 
     References
     ----------
@@ -168,18 +180,23 @@ def tabulated_flow_factors(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> factors = tabulated_flow_factors(named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6))
+    >>> factors = tabulated_flow_factors(named_surface("paper_reference"),
+    ...     LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6))
     >>> print(factors.flow(np.array([14e-6]))[0].round(2))
     [0.73]
     """
     least = float(rms_height(spectrum)) / 100 if smallest_gap is None else smallest_gap
-    scale = float(np.sqrt(stress_variance(spectrum, skin)))
-    gaps = gap_distribution(_PRESSURES * scale, spectrum, skin, area_correction)
+    scale = float(np.sqrt(twice_stress_variance(spectrum, skin)))
+    gaps = gap_distribution(_PRESSURES * scale, spectrum, skin=skin, area_correction=area_correction)
     mean = np.asarray(gaps.mean)
     widest = float((gaps.location + 6 * gaps.width).max())
+    kept = np.flatnonzero((mean > 10 * least) & np.isfinite(mean))
+    if not least > 0 or kept.size < 2:
+        raise InputError(
+            f"Flow factors need skin and roughness that are possible, and gaps wider than ten times the smallest, {least:g} m."
+        )
     edges = np.geomspace(least, widest, _GAPS)
     share, volume = (np.diff(part, axis=-1) for part in (gaps.cumulative(edges), gaps.film(edges)))
-    kept = np.flatnonzero((mean > 10 * least) & np.isfinite(mean))
     factors = [_of_cells(share[place], volume[place]) for place in kept]
     return TabulatedFlowFactors(mean[kept], tuple(factors))
 

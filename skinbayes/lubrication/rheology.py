@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -42,6 +42,7 @@ class Rheology(Protocol):
 def thinned_viscosity(
     low_shear_viscosity: ArrayLike,
     shear_rate: ArrayLike,
+    *,
     scale: ArrayLike = SILICONE_SCALE,
     exponent: ArrayLike = SILICONE_EXPONENT,
 ) -> FloatArray:
@@ -77,7 +78,10 @@ def thinned_viscosity(
     )
     with np.errstate(all="ignore"):
         possible = (eta > 0) & (rate >= 0) & (constant > 0) & (power >= 0)
-        return np.where(possible, eta / (1 + eta / constant * rate**power), np.nan)[()]
+        share = eta / constant * rate**power
+        # where next to nothing is left of η0, B γ̇^-n is
+        viscosity = np.where(share < 1e100, eta / (1 + share), constant / rate**power)
+        return np.where(possible, viscosity, np.nan)[()]
 
 
 @dataclass(frozen=True)
@@ -87,13 +91,35 @@ class ShearThinning:
     Attributes
     ----------
     low_shear_viscosity : η0, Pa s, > 0
-    scale : B, in Pa s times s^-n
-    exponent : n, dimensionless
+    scale : B, in Pa s times s^-n, > 0; inf does not thin
+    exponent : n, dimensionless, ≥ 0
+
+    Raises
+    ------
+    InputError
+        if one of them is impossible
     """
 
     low_shear_viscosity: float
+    _: KW_ONLY
     scale: float = SILICONE_SCALE
     exponent: float = SILICONE_EXPONENT
+
+    def __post_init__(self) -> None:
+        for name, value, possible, wanted in (
+            (
+                "low_shear_viscosity",
+                self.low_shear_viscosity,
+                0 < self.low_shear_viscosity < np.inf,
+                "> 0 Pa s",
+            ),
+            ("scale", self.scale, self.scale > 0, "> 0"),
+            ("exponent", self.exponent, 0 <= self.exponent < np.inf, ">= 0"),
+        ):
+            if not possible:
+                raise InputError(
+                    f"{name} of a shear-thinning liquid is {value:g}, but must be a number {wanted}."
+                )
 
     @property
     def shear_rate_range(self) -> tuple[float, float]:
@@ -102,8 +128,10 @@ class ShearThinning:
 
     def relative(self, shear_rate: FloatArray) -> tuple[FloatArray, FloatArray]:
         """η/η0 and d ln η/d ln γ̇, dimensionless, at shear rates in 1/s."""
-        share = self.low_shear_viscosity / self.scale * shear_rate**self.exponent
-        return 1 / (1 + share), -self.exponent * share / (1 + share)
+        with np.errstate(over="ignore"):
+            share = self.low_shear_viscosity / self.scale * shear_rate**self.exponent
+        thinning = 1 / (1 + share)
+        return thinning, -self.exponent * (1 - thinning)
 
 
 @dataclass(frozen=True, eq=False)

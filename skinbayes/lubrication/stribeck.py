@@ -13,8 +13,8 @@ from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
-from skinbayes.contact.variance import stress_variance
-from skinbayes.lubrication.asperities import AsperityTable, asperity_table, law_of_table
+from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.lubrication.asperities import AsperityTable, asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.rheology import Rheology
@@ -43,7 +43,7 @@ SILENT = {
 """Flags where there is no prediction, and what they say."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class StribeckCurve:
     """Friction of a lubricated ball and what it consists of; all but ``strain`` have the batch shape plus that of the speeds.
 
@@ -109,8 +109,8 @@ def stribeck_curve(
     *,
     normal_force: ArrayLike,
     sphere_radius: ArrayLike,
-    skin: LayeredSkin,
     spectrum: PowerSpectrum,
+    skin: LayeredSkin,
     frictional_shear_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
     velocity_shift_factor: ArrayLike = 1.0,
@@ -128,11 +128,11 @@ def stribeck_curve(
 
     Parameters
     ----------
-    speed_viscosity_product : ηv, N/m, > 0, shape ``(K,)``, or a scalar; with a rheology η0 v
+    speed_viscosity_product : ηv, N/m, ≥ 0, shape ``(K,)``, or a scalar; with a rheology η0 v. At 0 there is boundary friction.
     normal_force : F_N, N, > 0, batch shape
     sphere_radius : R, m, > 0, batch shape
-    skin : moduli in Pa, thickness in m, batch shape
     spectrum : power spectrum, C in m^4, batch shape
+    skin : moduli in Pa, thickness in m, batch shape
     frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     area_correction : γ, dimensionless, 0 < γ ≤ 1, batch shape; 1 is plain Persson theory
     velocity_shift_factor : a, dimensionless, > 0, batch shape; the theory is evaluated at a ηv
@@ -159,9 +159,10 @@ def stribeck_curve(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> wet, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], sphere_radius=8e-3, normal_force=0.2,
-    ...     skin=wet, spectrum=surface, frictional_shear_stress=15e6)
+    >>> surface = named_surface("paper_reference")
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> curve = stribeck_curve([1e-6, 1e-3, 2e-2, 10.0], normal_force=0.2, sphere_radius=8e-3,
+    ...     spectrum=surface, skin=wet, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3))
     [1.423 0.915 0.109   nan]
     >>> print(*curve.reasons(), sep="\\n")
@@ -170,18 +171,14 @@ def stribeck_curve(
     """
     given = np.asarray(speed_viscosity_product, dtype=np.float64)
     products = np.atleast_1d(given)
-    variance = stress_variance(spectrum, skin)
+    twice_variance = twice_stress_variance(spectrum, skin)
     modulus = reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk)
-    table = asperity_table(spectrum, skin, area_correction)
+    table = asperity_table(spectrum, skin, area_correction=area_correction)
+    case = (normal_force, sphere_radius, frictional_shear_stress, area_correction, velocity_shift_factor,
+            twice_variance, modulus)  # fmt: skip
     inputs = np.broadcast_arrays(
-        *(
-            np.asarray(x, dtype=np.float64)[..., None]
-            for x in (
-                sphere_radius, normal_force, frictional_shear_stress, area_correction, velocity_shift_factor, variance, modulus,
-            )
-        ),
-        table.separation[..., :1],
-    )  # fmt: skip
+        *(np.asarray(x, dtype=np.float64)[..., None] for x in case), table.separation[..., :1]
+    )
     batch = inputs[0].shape[:-1]
     cases = np.concatenate(inputs[:-1], axis=-1).reshape(-1, len(inputs) - 1)
     points = (np.broadcast_to(part, (*batch, part.shape[-1])) for part in table)
@@ -189,7 +186,7 @@ def stribeck_curve(
     rows = [
         _one_curve(
             products,
-            _Case(*case),
+            _Case(*row),
             AsperityTable(*points),
             flow_factors,
             rheology,
@@ -197,27 +194,30 @@ def stribeck_curve(
             thickest_film,
             largest_strain,
         )
-        for case, *points in zip(cases.tolist(), knots, levels, strict=True)
+        for row, *points in zip(cases.tolist(), knots, levels, strict=True)
     ]
 
-    def gather(name: str) -> Any:
-        stacked = np.array([row[name] for row in rows])
+    def gather(name: str, kind: str) -> Any:
+        # an empty batch has no row that tells its kind
+        stacked = np.array([row[name] for row in rows], dtype=bool if "bool" in kind else np.float64)
         if name == "strain":
             return stacked.reshape(batch)[()]
         return stacked.reshape((*batch, *given.shape))[()]
 
-    return StribeckCurve(**{entry.name: gather(entry.name) for entry in fields(StribeckCurve)})
+    return StribeckCurve(
+        **{entry.name: gather(entry.name, str(entry.type)) for entry in fields(StribeckCurve)}
+    )
 
 
 class _Case(NamedTuple):
     """One set of parameters, SI."""
 
-    sphere_radius: float
     normal_force: float
+    sphere_radius: float
     shear_stress: float
     area_correction: float
     shift: float
-    variance: float
+    twice_variance: float
     modulus: float
 
 
@@ -232,14 +232,14 @@ def _one_curve(
     largest_strain: float,
 ) -> dict[str, Any]:
     """The fields of a `StribeckCurve` for one set of parameters."""
-    cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, case.modulus)
-    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, case.modulus)
+    cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, reduced_modulus=case.modulus)
+    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, reduced_modulus=case.modulus)
     load, strain = float(cylinder.load_per_length), float(line.half_width / cylinder.cylinder_radius)
     shifted = products * case.shift
     with np.errstate(invalid="ignore"):
         physical = np.isfinite(strain) & (load > 0) & (case.shear_stress >= 0)
-        physical = physical & np.isfinite(table.log_pressure).all() & (np.diff(table.separation) > 0).all()
-        possible = (shifted > 0) & (shifted < np.inf) & physical
+        physical = physical & (case.shift > 0) & is_lawful(*table)
+        possible = (shifted >= 0) & (shifted < np.inf) & physical
         beyond = possible & (3 * np.pi * shifted > thickest_film * load)
     wide = np.full(products.shape, bool(strain > largest_strain))
     solved = possible & ~beyond & ~wide
@@ -268,7 +268,9 @@ def _one_curve(
             rheology=rheology,
             nodes=nodes,
         )
-        area = relative_contact_area(films.asperity_pressure, case.variance, case.area_correction)
+        area = relative_contact_area(
+            films.asperity_pressure, case.twice_variance, area_correction=case.area_correction
+        )
         boundary = case.shear_stress * (area @ films.load_weight) / load
         for name in names:
             result[name][solved] = boundary if name == "boundary" else getattr(films, name)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def fit_updates(fit: Fit) -> dict[str, PriorUpdate]:
     """Prior against posterior of each free parameter, by label.
 
-    Spreads are compared in the coordinates of the sampler: logarithms of positive parameters. Without the problem the
+    Spreads are compared in the coordinates of each parameter alone: logarithms of positive ones. Without the problem the
     support of a parameter is not known, and all whose draws are positive count as positive.
     """
     from skinbayes.diagnose import prior_updates
@@ -22,7 +22,8 @@ def fit_updates(fit: Fit) -> dict[str, PriorUpdate]:
 
     before, after = fit.theta("prior"), fit.theta()
     if fit.problem is not None:
-        transform = fit.problem.target().transform
+        # where funnels are straightened, the coordinates of the sampler mix parameters
+        transform = VectorTransform(fit.problem.target().transform.transforms)
     else:
         positive = np.atleast_1d(np.vstack([before, after]).min(axis=0) > 0.0)
         transform = VectorTransform.for_supports(

@@ -14,6 +14,7 @@ from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.problem.failures import explained
+from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
 from skinbayes.problem.rows import data_notes
@@ -27,7 +28,10 @@ PREDICTIONS = 2_000_000
 """Predictions that are made of them at most: with more than 2,000 rows fewer draws are tried."""
 
 FEWEST_DRAWS = 200
-"""Prior draws that are tried with any number of rows."""
+"""Prior draws that are tried with any number of rows, and of models that solve their physics anew for each."""
+
+POINTS, FEW_POINTS = 48, 16
+"""Prior draws about which predictions are differentiated, and about which those of models that solve their physics anew."""
 
 MOST_LEVELS = 5
 """Grouping columns with more levels than this (people) are not looked at level by level."""
@@ -84,7 +88,8 @@ def check_problem(problem: StatisticalModel, seed: int = 1) -> CheckReport:
     InputError
         No prior draw gives a finite prediction.
     """
-    count = max(FEWEST_DRAWS, min(DRAWS, PREDICTIONS // problem.conditions.n_rows))
+    most = FEWEST_DRAWS if _solved_anew(problem) else DRAWS
+    count = max(FEWEST_DRAWS, min(most, PREDICTIONS // problem.conditions.n_rows))
     draws = problem.draw_prior(np.random.default_rng([seed, 3]), count) if problem.free else np.zeros((1, 0))
     predictions, usable, positive = _predictions(problem, draws)
     identifiability = None
@@ -92,6 +97,11 @@ def check_problem(problem: StatisticalModel, seed: int = 1) -> CheckReport:
         with explained(problem.spec.path, "what the data can tell cannot be computed"):
             identifiability = _identify(problem, draws[usable], positive)
     return CheckReport(problem.name, _setup(problem), _priors(problem), predictions, identifiability)
+
+
+def _solved_anew(problem: StatisticalModel) -> bool:
+    """Whether a prediction takes hundredths of a second because the model has no table."""
+    return problem.forward.costly and problem.forward.prepare is None
 
 
 def _setup(problem: StatisticalModel) -> tuple[str, ...]:
@@ -102,7 +112,7 @@ def _setup(problem: StatisticalModel) -> tuple[str, ...]:
     if problem.dataset is not None:
         rows = problem.conditions.n_rows
         said.append(
-            f"{rows} {'row' if rows == 1 else 'rows'} of {problem.dataset.key}: "
+            f"{rows} {'row' if rows == 1 else 'rows'} of {problem.dataset.shown}: "
             + "; ".join(f"{o.name}, noise {o.noise.name}" for o in problem.observations)
             + "."
         )
@@ -140,7 +150,9 @@ def _predictions(
 ) -> tuple[tuple[str, ...], NDArray[np.bool_], NDArray[np.bool_]]:
     """Sentences about finite predictions, which of the draws have them, and which data are predicted > 0 by all of those."""
     finite, positive = np.ones(len(draws), dtype=bool), np.ones(0, dtype=bool)
-    step = max(1, PIECE // problem.conditions.n_rows)
+    impossible = 0
+    likelihood = Likelihood(problem)
+    step = max(1, PIECE // (likelihood.size if problem.observations else problem.conditions.n_rows))
     for start in range(0, len(draws), step):  # nothing is kept but what the sentences need
         predicted = problem.predict(draws[start : start + step])
         names = problem.observables if problem.observations else tuple(predicted)
@@ -149,6 +161,9 @@ def _predictions(
         if problem.observations:
             above = [(predicted[name][found] > 0).all(axis=0) for name in problem.observables]
             positive = np.concatenate(above) & (positive if start else True)
+            with np.errstate(all="ignore"):
+                density = likelihood.given(draws[start : start + step], predicted)[found]
+            impossible += int((~np.isfinite(density)).sum())
     if not finite.any():
         _, missing = predicted_everywhere(problem, draws[:FEWEST_DRAWS])
         raise InputError(
@@ -164,10 +179,8 @@ def _predictions(
         said = [
             f"{(~finite).sum()} of {len(draws)} prior draws give no finite prediction (taken as impossible); first at {where}."
         ]
-    if problem.observed is not None:
-        possible = np.isfinite(problem.log_likelihood(draws[finite]))
-        if not possible.all():
-            said.append(f"{(~possible).sum()} of them give the data no probability at all.")
+    if impossible:
+        said.append(f"{impossible} of them give the data no probability at all.")
     return tuple(said), finite, positive
 
 
@@ -222,6 +235,7 @@ def _identify(
         rows=len(typical),
         groups=_groups(problem),
         derived=derived,
+        maximum_draws=FEW_POINTS if _solved_anew(problem) else POINTS,
     )
 
 

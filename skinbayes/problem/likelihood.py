@@ -28,11 +28,15 @@ class Likelihood:
 
     def pointwise(self, theta: FloatArray) -> FloatArray:
         """ln p of each datum, shape ``(B, M)``: given θ, and given all other data where groups share effects."""
-        return in_pieces(self._pointwise, theta, self._size)
+        return in_pieces(lambda part: self._pointwise(*self._predictions(part)), theta, self.size)
 
     def total(self, theta: FloatArray) -> FloatArray:
         """ln p of all data, shape ``(B,)``; NaN where the forward model has no answer."""
-        return in_pieces(self._total, theta, self._size)
+        return in_pieces(lambda part: self._total(*self._predictions(part)), theta, self.size)
+
+    def given(self, theta: FloatArray, predicted: Mapping[str, FloatArray]) -> FloatArray:
+        """The same for vectors whose predictions are known, each ``(B, N)``."""
+        return self._total(self.problem.inputs(theta), [predicted[o.name] for o in self._observations])
 
     def left_out(self, theta: FloatArray, column: str) -> FloatArray:
         """ln p of all data of each level of a grouping column given the others, shape ``(B, levels)``."""
@@ -46,15 +50,15 @@ class Likelihood:
             raise InputError(f"{self.problem.spec.path}: leaving out groups needs a model of one observable")
         place: dict[str, int] = {}
         block = np.array([place.setdefault(label, len(place)) for label in labels[column].tolist()])
-        return in_pieces(lambda part: self._left_out(part, block, len(place)), theta, self._size)
+        return in_pieces(lambda part: self._left_out(part, block, len(place)), theta, self.size)
 
     def draw(
         self, theta: FloatArray, rng: np.random.Generator, effects: FloatArray | None = None
     ) -> FloatArray:
         """Simulated data, shape ``(B, M)``; effects of groups drawn anew unless given, ``(B, G)``."""
         # predictions in pieces, random numbers for all vectors together: their order does not depend on the pieces
-        predicted = in_pieces(lambda part: np.stack(self._predictions(part)[1], axis=1), theta, self._size)
-        spread = in_pieces(self._stacked_spread, theta, self._size) if self.problem.input_spread else None
+        predicted = in_pieces(lambda part: np.stack(self._predictions(part)[1], axis=1), theta, self.size)
+        spread = in_pieces(self._stacked_spread, theta, self.size) if self.problem.input_spread else None
         inputs = self.problem.inputs(theta)
         drawn = [
             o.noise.draw(
@@ -85,11 +89,11 @@ class Likelihood:
             residual, width, scales, _ = self._residuals(groups, inputs, predicted)
             return groups.draw_effects(rng, residual, width, scales)
 
-        return in_pieces(piece, theta, self._size)
+        return in_pieces(piece, theta, self.size)
 
     def width(self, theta: FloatArray) -> FloatArray:
         """Width of the noise of each datum, shape ``(B, M)``; of its ln where the noise is logarithmic."""
-        return in_pieces(self._widths, theta, self._size)
+        return in_pieces(self._widths, theta, self.size)
 
     def independent(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
         """Changes ``(B, M)`` of the data at one parameter vector ``(D,)`` as numbers that scatter independently, ``(B, M + G)``.
@@ -115,23 +119,21 @@ class Likelihood:
         return self.problem.observations
 
     @property
-    def _size(self) -> int:
+    def size(self) -> int:
         """Numbers that one vector needs: its data, and the matrix of the levels of groups."""
         groups = self.problem.groups
         matrices = 0 if groups is None else groups.matrix_size
         return len(self._observations) * self.problem.conditions.n_rows + matrices
 
-    def _total(self, theta: FloatArray) -> FloatArray:
+    def _total(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
         groups = self.problem.groups
         if groups is None:
-            return self._pointwise(theta).sum(axis=-1)
-        inputs, (predicted,) = self._predictions(theta)
-        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+            return self._pointwise(inputs, predicted).sum(axis=-1)
+        residual, width, scales, offset = self._residuals(groups, inputs, predicted[0])
         density = groups.log_density(residual, width, scales) + offset.sum()
-        return np.where(np.isnan(predicted).any(axis=-1), np.nan, density)
+        return np.where(np.isnan(predicted[0]).any(axis=-1), np.nan, density)
 
-    def _pointwise(self, theta: FloatArray) -> FloatArray:
-        inputs, predicted = self._predictions(theta)
+    def _pointwise(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
         density = np.concatenate(
             [self._of_each(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)],
             axis=-1,
@@ -142,7 +144,7 @@ class Likelihood:
     def _left_out(self, theta: FloatArray, block: NDArray[np.intp], count: int) -> FloatArray:
         groups = self.problem.groups
         if groups is None:
-            pointwise = self._pointwise(theta)
+            pointwise = self._pointwise(*self._predictions(theta))
             return np.stack([pointwise[:, block == i].sum(axis=-1) for i in range(count)], axis=-1)
         inputs, (predicted,) = self._predictions(theta)
         residual, width, scales, offset = self._residuals(groups, inputs, predicted)

@@ -8,10 +8,11 @@ from pathlib import Path
 from skinbayes.problem.check import CheckReport, check_problem
 from skinbayes.problem.model_text import model_files, write_model
 from skinbayes.problem.statistical_model import StatisticalModel
+from skinbayes.problem.summary import summary
 from skinbayes.problem.target import PosteriorTarget
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Problem(StatisticalModel):
     """A statistical model bound to its data; frozen.
 
@@ -25,6 +26,9 @@ class Problem(StatisticalModel):
     >>> sb.load_problem("finger-null").names
     ('typical_friction_coefficient', 'noise_scale', 'group_scale[person]', 'group_scale[liquid]')
     """
+
+    def __repr__(self) -> str:
+        return summary(self)
 
     def check(self) -> CheckReport:
         """Look at the problem before sampling: priors, finite predictions, and what the data can tell apart, in words."""

@@ -10,11 +10,11 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.problem.funnels import funnels_of
+from skinbayes.problem.failures import impossible
+from skinbayes.problem.funnels import straightened
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
-from skinbayes.statistics.funnels import FunnelTransform
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 
 CANDIDATES_PER_START = 20
@@ -34,11 +34,12 @@ LOGARITHM = Transform("log", 0.0, inf)
 class PosteriorTarget:
     """Posterior density in unconstrained coordinates: log for positive parameters, logit for bounded ones.
 
-    Where groups share effects on ln of the data, bounded positive parameters are logarithms with walls instead. Levels of a
-    parameter and the effects of a group exchange a factor: together they are known as badly as the effects, their ratios as well
-    as the data. That ridge is straight in logarithms. Logits bend it towards the bounds: differences of walkers in the middle
-    no longer point along it, and walkers in its tails stay there for thousands of steps. Where a parameter differs by the very
-    levels that have effects, the funnel between it and the scale of the effects is straightened too.
+    Where groups share effects, bounded positive parameters are logarithms with walls instead. Levels of a parameter and the
+    effects of a group exchange a factor, or, where effects are added to the data, an amount: together they are known as badly
+    as the effects, their ratios or differences as well as the data. That ridge is straight in logarithms, or in the data that the
+    levels predict. Logits bend it towards the bounds: differences of walkers in the middle no longer point along it, and walkers
+    in its tails stay there for thousands of steps. Where a parameter differs by the very levels that have effects, the
+    funnel between it and the scale of the effects is straightened too.
 
     Attributes
     ----------
@@ -65,11 +66,11 @@ class PosteriorTarget:
     def transform(self) -> VectorTransform:
         """Map between parameters in SI and the real space; the density is zero where it leads out of their support."""
         supports = [p.prior.support for p in self.problem.free if p.prior]
-        if self.problem.groups is None or not self.problem.noise_is_logarithmic.all():
+        if self.problem.groups is None:
             return VectorTransform.for_supports(supports)
-        transforms = tuple(_with_walls(support) for support in supports)
-        funnels = funnels_of(self.problem, tuple(t == LOGARITHM for t in transforms))
-        return FunnelTransform(transforms, funnels) if funnels else VectorTransform(transforms)
+        return straightened(
+            self.problem, VectorTransform(tuple(_with_walls(support) for support in supports))
+        )
 
     @cached_property
     def _density(self) -> LogDensity:
@@ -100,13 +101,22 @@ class PosteriorTarget:
         theta = self.problem.draw_prior(rng, CANDIDATES_PER_START * count)
         position = self.transform.forward(theta)
         # the likelihood is what costs: it is evaluated once for each candidate
-        weight = self.problem.log_likelihood(theta) if self.use_likelihood else np.zeros(len(theta))
+        found = self.problem.data_likelihood()(theta) if self.use_likelihood else np.zeros(len(theta))
+        weight = impossible(found)
         prior = replace(self, use_likelihood=False).log_density(position)
         usable = np.isfinite(prior + weight) & np.isfinite(position).all(axis=-1)
         if usable.sum() < count:
+            path, without = self.problem.spec.path, int(np.isnan(found).sum())
+            remedy = (
+                f"the forward model gives no prediction at {without} of them. What to do: narrow the priors to values at "
+                f"which it does; 'skinbayes check {path}' names some at which it does not"
+                if 2 * without > len(usable) - usable.sum()
+                else "nearly all of them make the data impossible. What to do: widen the noise or the priors until they reach "
+                f"the data; 'skinbayes prior {path}' shows how far they are"
+            )
             raise InputError(
-                f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density; "
-                "the priors mostly cover values at which the forward model gives no prediction (see 'skinbayes check')"
+                f"{path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density, where {count} are "
+                f"needed to start from; {remedy}"
             )
         position, weight = position[usable], weight[usable]
         beta = largest_power(weight, count)

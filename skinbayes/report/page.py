@@ -96,7 +96,7 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "missing": [sentences.with_symbols(fit, sentence) for sentence in quality.missing(fit)],
         "learnt": sentences.learnt(fit),
         "products": sentences.learnt_products(fit),
-        "not_learnt": sentences.not_learnt(fit),
+        "not_learnt": [*sentences.not_learnt(fit), *sentences.open_ends(fit)],
         "ridges": ridge_sentences(fit),
         "disagreements": sentences.disagreements(fit),
         "combinations": _combinations(fit, check),

@@ -15,7 +15,7 @@ from skinbayes.plot.predictive import (
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.words import and_list, plural
+from skinbayes.report.words import and_list, plural, sample_size
 from skinbayes.statistics.agreement import Agreement
 from skinbayes.statistics.agreement import examine as agreement_of
 from skinbayes.statistics.noise_families import noise_family
@@ -143,7 +143,8 @@ def convergence(fit: Fit) -> list[str]:
         f"{run['ensembles']} independent ensembles of {run['walkers']} walkers made {run['steps']} steps each; the first "
         f"{run['burn_in']} were left out and one in {run['thinning']} of the others kept. "
         f"{percent(float(acceptance))} of the proposed moves were accepted; the model was evaluated {run['evaluations']} times.",
-        f"The smallest effective sample size of a parameter is {number(float(ess), 3)}, the largest R-hat {r_hat:.3f}.",
+        f"The smallest effective sample size of a parameter is {number(float(ess), 3) if ess > 0 else 'unknown'}, "
+        f"the largest R-hat {r_hat:.3f}.",
     ]
     if note := more_than_kept(fit):
         said.append(note)
@@ -168,9 +169,13 @@ def sampling(fit: Fit) -> str:
     """How the sampling went, in one line: it says nothing about the model."""
     run = fit.provenance["sampling"]
     return (
-        f"The computation {'converged' if fit.converged else 'has NOT converged'}: effective sample size at least "
-        f"{np.min(run['ess_bulk']):.0f}, R-hat at most {np.max(run['r_hat']):.3f}."
+        f"The computation {'converged' if fit.converged else 'has NOT converged'}: effective sample size "
+        f"{_at_least(float(np.min(run['ess_bulk'])))}, R-hat at most {np.max(run['r_hat']):.3f}."
     )
+
+
+def _at_least(ess: float) -> str:
+    return f"at least {sample_size(ess)}" if ess > 0 else "unknown, as the run is too short to tell"
 
 
 def missing(fit: Fit) -> list[str]:

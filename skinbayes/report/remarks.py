@@ -32,6 +32,7 @@ def remarks(fit: Fit) -> list[str]:
     said = [" ".join(quality.verdict(fit)), *sentences.disagreements(fit)]
     if silent:
         said.append(f"Only the prior speaks about {and_list(silent)}.")
+    said += sentences.open_ends(fit)
     said.append(str(fit.provenance["sampling"]["verdict"]))
     if note := quality.more_than_kept(fit):
         said.append(note)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.diagnose.rule import MUCH, SOMETHING, UNCHANGED
-from skinbayes.plot.numbers import interval, number, quantity, share
+from skinbayes.plot.numbers import interval, number, percent, quantity, share
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.opening import is_scatter
@@ -168,3 +168,26 @@ def not_learnt(fit: Fit) -> list[str]:
         for update in fit_updates(fit).values()
         if update.verdict == "not updated" and not is_scatter(update.name)
     ]
+
+
+def open_ends(fit: Fit) -> list[str]:
+    """One entry for each parameter that effects of groups, added to the data, let run to the lower end of its prior."""
+    problem, said = fit.problem, []
+    if problem is None or problem.groups is None or problem.noise_is_logarithmic.all():
+        return []
+    updates = fit_updates(fit)
+    for label, prior in ((p.label, p.prior) for p in problem.free):
+        if prior is None or is_scatter(label) or updates[label].verdict == "not updated":
+            continue
+        draws, ends = fit.draws(label), [float(prior.quantile(part)) for part in (0.02, 0.1)]
+        nearest, near = (float((draws < end).mean()) for end in ends)
+        # flat up to the end: a fifth of what lies in the lowest 10 % of the prior lies in the lowest 2 %
+        if prior.support[0] > 0.0 and near > 0.02 and nearest > 0.1 * near:
+            columns = " and ".join(problem.groups.columns)
+            said.append(
+                f"{title_name(fit, label)}: the data do not bound it from below. {percent(near)} of the posterior lies below "
+                f"{quantity(ends[1], fit.unit(label))}, down to the end of the prior: there effects of {columns}, added "
+                f"to the data, stand for all that it predicts. A tighter prior on the scale of the groups of {columns} would "
+                "bound it; else the lower end of its interval is that of the prior."
+            )
+    return said

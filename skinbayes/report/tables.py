@@ -9,6 +9,7 @@ import numpy as np
 
 from skinbayes.plot.numbers import interval, number, quantity
 from skinbayes.plot.symbols import spoken_name
+from skinbayes.report.words import sample_size
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def parameter_rows(fit: Fit) -> list[ParameterRow]:
                 source=str(prior["source"]),
                 median=quantity(median, unit),
                 interval=interval(float(row["q05"]), float(row["q95"]), unit, typical=median),
-                ess=f"{row['ess_bulk']:.0f}",
+                ess=sample_size(row["ess_bulk"]),
                 r_hat=f"{row['r_hat']:.3f}",
             )
         )

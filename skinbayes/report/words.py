@@ -12,6 +12,17 @@ def plural(column: str) -> str:
     return _PLURALS.get(column, f"{column.replace('_', ' ')}s")
 
 
+def sample_size(ess: float) -> str:
+    """An effective sample size, or that it is unknown: the autocorrelation has not died out within the run.
+
+    Examples
+    --------
+    >>> sample_size(512.3), sample_size(0.0), sample_size(float("nan"))
+    ('512', 'unknown', 'unknown')
+    """
+    return f"{ess:.0f}" if ess > 0 else "unknown"
+
+
 def and_list(parts: Sequence[str]) -> str:
     """``"a, b and c"``.
 

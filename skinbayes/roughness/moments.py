@@ -31,7 +31,8 @@ def spectral_moment(spectrum: PowerSpectrum, order: float) -> FloatArray:
     Examples
     --------
     >>> from skinbayes.roughness import SelfAffineSpectrum
-    >>> surface = SelfAffineSpectrum(1e-6, 0.8, 1e4, 1e4, 1e8)
+    >>> surface = SelfAffineSpectrum(rms_height=1e-6, hurst_exponent=0.8, wavevector_min=1e4,
+    ...     wavevector_rolloff=1e4, wavevector_max=1e8)
     >>> print(f"{spectral_moment(surface, 0):.3e}")
     1.000e-12
     """

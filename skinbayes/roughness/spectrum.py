@@ -79,7 +79,7 @@ def _power_integral(length: FloatArray, exponent: Floats) -> FloatArray:
     return np.asarray(length * exprel(exponent * length))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SelfAffineSpectrum:
     """Self-affine fractal surface with a plateau at long wavelengths.
 
@@ -103,7 +103,8 @@ class SelfAffineSpectrum:
     Examples
     --------
     >>> from skinbayes.roughness import rms_slope
-    >>> surface = SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 6.345e3, 1e9)
+    >>> surface = SelfAffineSpectrum(rms_height=22.4e-6, hurst_exponent=0.78, wavevector_min=1e3,
+    ...     wavevector_rolloff=6.345e3, wavevector_max=1e9)
     >>> print(f"{surface.power([1e3])[0]:.4e} {rms_slope(surface):.5f}")
     1.7576e-18 2.79993
     """

@@ -10,7 +10,7 @@ from skinbayes.errors import InputError
 from skinbayes.roughness.spectrum import SelfAffineSpectrum
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class NamedSurface:
     """A surface with a name.
 
@@ -28,22 +28,40 @@ class NamedSurface:
 
 _ALL = (
     NamedSurface(
-        "paper_reference",
-        "Wrist skin of Persson et al. 2013, Sect. 3, with the plateau up to q_r = 6.345e3 1/m that the text does "
+        name="paper_reference",
+        description="Wrist skin of Persson et al. 2013, Sect. 3, with the plateau up to q_r = 6.345e3 1/m that the text does "
         "not print but its slope of 2.8 and total area of 2.7 A0 require.",
-        SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 6.345e3, 1e9),
+        spectrum=SelfAffineSpectrum(
+            rms_height=22.4e-6,
+            hurst_exponent=0.78,
+            wavevector_min=1e3,
+            wavevector_rolloff=6.345e3,
+            wavevector_max=1e9,
+        ),
     ),
     NamedSurface(
-        "paper_reference_sharp",
-        "The same amplitude at large wavevectors without a plateau: h_rms = 70.8 µm instead of 22.4 µm, "
+        name="paper_reference_sharp",
+        description="The same amplitude at large wavevectors without a plateau: h_rms = 70.8 µm instead of 22.4 µm, "
         "slope 2.8.",
-        SelfAffineSpectrum(70.8e-6, 0.78, 1e3, 1e3, 1e9),
+        spectrum=SelfAffineSpectrum(
+            rms_height=70.8e-6,
+            hurst_exponent=0.78,
+            wavevector_min=1e3,
+            wavevector_rolloff=1e3,
+            wavevector_max=1e9,
+        ),
     ),
     NamedSurface(
-        "paper_printed",
-        "The four numbers printed in Persson et al. 2013, Sect. 3. Inconsistent: they give slope 0.88 and total "
+        name="paper_printed",
+        description="The four numbers printed in Persson et al. 2013, Sect. 3. Inconsistent: they give slope 0.88 and total "
         "area 1.31 A0, not the 2.8 and 2.7 A0 printed beside them. For comparison only.",
-        SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 1e3, 1e9),
+        spectrum=SelfAffineSpectrum(
+            rms_height=22.4e-6,
+            hurst_exponent=0.78,
+            wavevector_min=1e3,
+            wavevector_rolloff=1e3,
+            wavevector_max=1e9,
+        ),
     ),
 )
 

@@ -51,7 +51,7 @@ class TabulatedSpectrum:
     node_power: FloatArray
     scale: Floats
 
-    def __init__(self, wavevector: ArrayLike, power: ArrayLike, scale: ArrayLike = 1.0) -> None:
+    def __init__(self, wavevector: ArrayLike, power: ArrayLike, *, scale: ArrayLike = 1.0) -> None:
         for name, values in (("wavevector", wavevector), ("node_power", power)):
             own = np.array(values, dtype=np.float64)  # quadrature weights are kept, so nobody may write here
             own.flags.writeable = False
@@ -61,7 +61,7 @@ class TabulatedSpectrum:
 
     @classmethod
     def from_profile(
-        cls, wavevector: ArrayLike, profile_power: ArrayLike, scale: ArrayLike = 1.0
+        cls, wavevector: ArrayLike, profile_power: ArrayLike, *, scale: ArrayLike = 1.0
     ) -> TabulatedSpectrum:
         """The isotropic surface whose straight profiles have the one-dimensional spectrum C1D(q).
 
@@ -98,7 +98,7 @@ class TabulatedSpectrum:
         """
         nodes, values = as_field(wavevector), as_field(profile_power)
         check_table(nodes, values, "profile_power", "m^3")
-        return cls(nodes, isotropic_from_profile(nodes, values), scale)
+        return cls(nodes, isotropic_from_profile(nodes, values), scale=scale)
 
     @property
     def wavevector_min(self) -> Floats:

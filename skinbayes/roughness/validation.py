@@ -30,7 +30,8 @@ def validate_spectrum(spectrum: SelfAffineSpectrum) -> None:
     Examples
     --------
     >>> from skinbayes.roughness import SelfAffineSpectrum
-    >>> validate_spectrum(SelfAffineSpectrum(1e-6, 1.8, 1e4, 1e4, 1e8))
+    >>> validate_spectrum(SelfAffineSpectrum(rms_height=1e-6, hurst_exponent=1.8, wavevector_min=1e4,
+    ...     wavevector_rolloff=1e4, wavevector_max=1e8))
     Traceback (most recent call last):
         ...
     skinbayes.errors.InputError: hurst_exponent is 1.8, but must be at most 1.

@@ -43,6 +43,11 @@ class Argument:
     positive: bool = False
     infinite_allowed: bool = False
 
+    @property
+    def is_width(self) -> bool:
+        """True if it is a difference of values: a width of 2 degC is 2 K."""
+        return self.kind == "value" and self.name in ("sd", "scale")
+
 
 @dataclass(frozen=True)
 class Family:

@@ -204,7 +204,7 @@ def _shortened(text: str) -> str:
     return text if len(text) <= 40 else text[:37] + "..."
 
 
-def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
+def parse_quantity(value: str | int | float, unit: str, *, where: str, difference: bool = False) -> float:
     """Read a number with its unit and return it in SI.
 
     Parameters
@@ -212,6 +212,7 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
     value : text such as ``"15 MPa"``, ``"20 µm"``, ``"20 degC"``, ``"50 %"``, ``"inf"``; or a bare number
     unit : SI unit of the result, as in the vocabulary; ``"1"`` for dimensionless numbers
     where : place named in the message (file, key, option)
+    difference : True for spreads and differences: a standard deviation of "2 degC" is 2 K
 
     Returns
     -------
@@ -221,8 +222,8 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
     Raises
     ------
     InputError
-        if the unit is missing, unknown or of another dimension, or the text is not a finite number. Numbers
-        without a unit are taken for dimensionless quantities only; ``inf`` needs no unit.
+        if the unit is missing, unknown or of another dimension, the text is not a finite number, or a temperature
+        is below absolute zero. Numbers without a unit are taken for dimensionless quantities only; ``inf`` needs no unit.
 
     Examples
     --------
@@ -253,8 +254,10 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str) -> float:
             return number
         raise InputError(f"{where}: {text} has no unit; {expected}")
     found = repr(text[:80])
-    multiplier, divisor, offset = _explained_conversion(unit_text, unit, where, found)
-    result = number * multiplier / divisor + offset
+    multiplier, divisor, offset = _explained_conversion(unit_text, unit, where, found, difference)
+    result = number * multiplier / divisor + (0.0 if difference else offset)
+    if unit == "K" and result < 0 and not difference:
+        raise InputError(f"{where}: {found} is below absolute zero; {expected}")
     if result == inf and not spelled_infinite:
         raise InputError(f"{where}: {found} is too large for a number; {expected}")
     return result

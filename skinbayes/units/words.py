@@ -191,9 +191,13 @@ def canonical_unit(text: str) -> str:
             position, operand = position + between.end(), True
         else:
             raise UnknownUnit(plain)
-    if operand or depth:
+    shares = _SHARES.findall(found)
+    if operand or depth or len(shares) > 1 or not {"", "**1", "**-1"}.issuperset(shares):  # "% %" is a slip
         raise UnknownUnit(plain)
     return found
+
+
+_SHARES = re.compile(r"(?:percent|permille)\)(\*\*-?[0-9])?")
 
 
 def is_unit(text: str) -> bool:

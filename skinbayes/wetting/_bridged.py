@@ -53,18 +53,26 @@ class Bridged(NamedTuple):
         if self.table is not None:
             source = self.source
             groups = skin_groups(
-                self.load, self.pull, self.height, source.spectrum, source.skin, source.area_correction
+                self.load,
+                self.pull,
+                height=self.height,
+                spectrum=source.spectrum,
+                skin=source.skin,
+                area_correction=source.area_correction,
             )
             known = self.table.covers(groups) & (self.pull > 0)
             if known.any():
                 chosen = {name: value[known] for name, value in groups.items()}
-                curve = self.table.curve(chosen, self.load[known], self.height[known])
+                curve = self.table.curve(chosen, self.load[known], height=self.height[known])
                 separation[known] = curve.flooded()
         rest = np.flatnonzero(~known)
         if rest.size:
             source = self.source.select(rest)
             separation[rest] = mean_separation(
-                self.load[rest, None], source.spectrum, source.skin, source.area_correction
+                self.load[rest, None],
+                source.spectrum,
+                skin=source.skin,
+                area_correction=source.area_correction,
             )[:, 0]
         return separation, known, curve
 

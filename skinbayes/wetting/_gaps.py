@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
-from typing import Any, Literal
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from skinbayes.roughness.tabulated import TabulatedSpectrum
 from skinbayes.wetting._mixture import Mixture
 
 Closure = Literal["gaussian", "sharp"]
+Thing = TypeVar("Thing", SelfAffineSpectrum, LayeredSkin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,13 @@ class GapSource:
 
     def at(self, pressure: FloatArray) -> tuple[Mixture, FloatArray]:
         """Components, shape ``(B, K, n)``, and mean separation (m), shape ``(B, K)``, at pressures (Pa) of shape ``(B, K)``."""
-        gaps = gap_distribution(pressure, self.spectrum, self.skin, self.area_correction, self.closure)
+        gaps = gap_distribution(
+            pressure,
+            self.spectrum,
+            skin=self.skin,
+            area_correction=self.area_correction,
+            closure=self.closure,
+        )
         # a component without weight, as all are in complete contact, may have any place
         place = np.where(np.isfinite(gaps.location), gaps.location, 0.0)
         width = np.where(gaps.width > 0, gaps.width, gaps.mean[..., None])
@@ -55,15 +62,17 @@ class GapSource:
 def map_spectrum(spectrum: PowerSpectrum, change: Callable[[FloatArray], FloatArray]) -> PowerSpectrum:
     """The spectrum with ``change`` applied to those of its parameters that are arrays."""
     if isinstance(spectrum, SelfAffineSpectrum):
-        return SelfAffineSpectrum(*_changed(spectrum, change))
+        return _changed(spectrum, change)
     if isinstance(spectrum, TabulatedSpectrum) and np.ndim(spectrum.scale):
-        return TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, change(np.asarray(spectrum.scale)))
+        return TabulatedSpectrum(
+            spectrum.wavevector, spectrum.node_power, scale=change(np.asarray(spectrum.scale))
+        )
     return spectrum
 
 
 def map_skin(skin: LayeredSkin, change: Callable[[FloatArray], FloatArray]) -> LayeredSkin:
     """The skin with ``change`` applied to those of its parameters that are arrays."""
-    return LayeredSkin(*_changed(skin, change))
+    return _changed(skin, change)
 
 
 def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, ...]]:
@@ -73,6 +82,6 @@ def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, 
     return [*shapes, np.shape(getattr(spectrum, "scale", 1.0))]
 
 
-def _changed(thing: Any, change: Callable[[FloatArray], FloatArray]) -> list[Any]:
-    values = [getattr(thing, field.name) for field in fields(thing)]
-    return [change(value) if np.ndim(value) else value for value in values]
+def _changed(thing: Thing, change: Callable[[FloatArray], FloatArray]) -> Thing:
+    values = ((field.name, getattr(thing, field.name)) for field in fields(thing))
+    return replace(thing, **{name: change(value) for name, value in values if np.ndim(value)})

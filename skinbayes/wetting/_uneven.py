@@ -8,6 +8,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.wetting._mixture import upper_tail
 from skinbayes.wetting._types import IndexArray
 
+_WIDEST = 1e5  # standard deviation over the last edge beyond which nothing but the steps of the curve counts
 _FAR = 8.0  # standard deviations beyond which a normal distribution has nothing left
 _PLACES = 256  # treated at a time, so that their terms fit into the cache
 
@@ -24,7 +25,7 @@ def uneven_average(
     ----------
     edge, local : places where the slope changes, ascending, and the curve there, shape ``(B, n)``
     before : shape ``(B,)``
-    place, width : means and standard deviations, > 0, in the unit of the edges, shape ``(B, T)``
+    place, width : means, may be infinite, and standard deviations, > 0, in the unit of the edges, shape ``(B, T)``
 
     Returns
     -------
@@ -33,10 +34,13 @@ def uneven_average(
     count, n = edge.shape
     grade = np.concatenate([np.diff(local) / np.diff(edge), np.zeros((count, 1))], axis=1)
     turn = np.diff(grade, axis=1, prepend=0.0)
+    # wider ones lose their digits between ramps that cancel
+    shrink = np.minimum(1.0, _WIDEST * edge[:, -1:] / width)
+    place, width = place * shrink, width * shrink
     reach = _FAR * width
     average, slope = np.where(place > edge[:, -1:], local[:, -1:], before[:, None]), np.zeros(place.shape)
     near = (place > edge[:, :1] - reach) & (place < edge[:, -1:] + reach)
-    rows, columns = np.nonzero(near | ~np.isfinite(place + width + edge[:, -1:]))
+    rows, columns = np.nonzero(near | np.isnan(place + width + edge[:, -1:]))
     for start in range(0, rows.size, _PLACES):
         member, column = rows[start : start + _PLACES], columns[start : start + _PLACES]
         x, w, far = (a[member, column] for a in (place, width, reach))
@@ -62,7 +66,7 @@ def uneven_average(
         jump = local[member, 0] - before[member]
         average[member, column] = before[member] + jump * step + rise
         slope[member, column] = tilt + jump * bell / w
-    return average, slope
+    return average, slope * shrink
 
 
 def _runs(first: IndexArray, lengths: IndexArray) -> tuple[IndexArray, IndexArray]:

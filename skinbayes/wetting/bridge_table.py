@@ -42,7 +42,7 @@ _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 Groups = Mapping[str, FloatArray]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class BridgeTable:
     """Bridges of skins in a box of dimensionless groups, each a curve along the Kelvin length.
 
@@ -76,7 +76,7 @@ class BridgeTable:
         ]
         return np.asarray(np.logical_and.reduce(inside))
 
-    def curve(self, groups: Groups, pressure: FloatArray, height: FloatArray) -> Curve:
+    def curve(self, groups: Groups, pressure: FloatArray, *, height: FloatArray) -> Curve:
         """Curves of skins in the box; pressure, Pa, and rms height, m, have the shape ``(B,)`` of the groups."""
         weight = np.ones((pressure.size, 1))
         for name, count in self.counts.items():
@@ -91,6 +91,7 @@ class BridgeTable:
 def skin_groups(
     pressure: FloatArray,
     pull: FloatArray,
+    *,
     height: FloatArray,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
@@ -121,9 +122,9 @@ def skin_groups(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> skin = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> arguments = (np.array([x]) for x in (6830.0, 0.0845, 22.4e-6))
-    >>> groups = skin_groups(*arguments, named_surface("paper_reference"), skin, np.array(0.42))
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> groups = skin_groups(np.array([6830.0]), np.array([0.0845]), height=np.array([22.4e-6]),
+    ...     spectrum=named_surface("paper_reference"), skin=skin, area_correction=np.array(0.42))
     >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["pull"].round(3))
     [5.858] [7.679] [1.531]
     """
@@ -147,6 +148,7 @@ def skin_groups(
 def bridge_table(
     low: Mapping[str, float],
     high: Mapping[str, float],
+    *,
     depth: float,
     spectrum: PowerSpectrum | None = None,
     most: int = 4000,
@@ -183,11 +185,12 @@ def bridge_table(
     Layers from 6 to 8 MPa, down to a film of about 0.1 µm:
 
     >>> from skinbayes.roughness import named_surface
-    >>> skins = LayeredSkin(np.array([6e6, 8e6]), 20e3, 0.5, 0.5, 20e-6)
-    >>> same = (np.full(2, x) for x in (6830.0, 0.0845, 22.4e-6))
-    >>> groups = skin_groups(*same, named_surface("paper_reference"), skins, np.array(0.42))
+    >>> skins = LayeredSkin(young_modulus_layer=np.array([6e6, 8e6]), young_modulus_bulk=20e3,
+    ...     layer_thickness=20e-6)
+    >>> groups = skin_groups(np.full(2, 6830.0), np.full(2, 0.0845), height=np.full(2, 22.4e-6),
+    ...     spectrum=named_surface("paper_reference"), skin=skins, area_correction=np.array(0.42))
     >>> low, high = ({name: end(x) for name, x in groups.items()} for end in (np.min, np.max))
-    >>> table = bridge_table(low, high, 6830.0 / 20e3 / 1e-7)
+    >>> table = bridge_table(low, high, depth=6830.0 / 20e3 / 1e-7)
     >>> print(dict(table.counts), table.error < 1e-3)
     {'stiffness': 2, 'load': 3} True
     """
@@ -263,7 +266,9 @@ def _build(
         moved = np.moveaxis(parts, i, 0)
         parts = np.moveaxis(coefficients(moved.reshape(1, count, -1)).reshape(moved.shape), 0, i)
     parts = np.ascontiguousarray(parts.reshape(total, -1))
-    return BridgeTable(dict(low), dict(high), dict(counts), depth, parts, np.nan)
+    return BridgeTable(
+        low=dict(low), high=dict(high), counts=dict(counts), depth=depth, parts=parts, error=np.nan
+    )
 
 
 def _solvable(
@@ -291,7 +296,7 @@ def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
     count = len(exact)
     groups = {n: np.broadcast_to(x, (count,)) for n, x in {**_fields(table.low), **places}.items()}
     one = np.ones(count)
-    curve = table.curve(groups, one, one)
+    curve = table.curve(groups, one, height=one)
     sound = _curve_of(exact, curve.end, one, one)
     # all films but the last of them, which one of the two may not reach, and the vertical rise where the gap is flooded
     z = curve.end[:, None] * np.linspace(0.2, 0.98, 48)
@@ -329,23 +334,23 @@ def _curves(
     surface: PowerSpectrum
     if isinstance(spectrum, TabulatedSpectrum):
         scale = spectrum.scale * (height / rms_height(spectrum)) ** 2
-        surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale)
+        surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale=scale)
     else:
-        waves = (np.exp(given[name]) for name in SURFACE_GROUPS[1:])
-        surface = SelfAffineSpectrum(height, given["hurst_exponent"], *waves)
+        waves = {name: np.exp(given[name]) for name in SURFACE_GROUPS[1:]}
+        surface = SelfAffineSpectrum(rms_height=height, hurst_exponent=given["hurst_exponent"], **waves)
     skin = LayeredSkin(
-        _BULK * np.exp(given["stiffness"]),
-        bulk,
-        given["poisson_ratio_layer"],
-        given["poisson_ratio_bulk"],
-        np.exp(given["layer_thickness"]),
+        young_modulus_layer=_BULK * np.exp(given["stiffness"]),
+        young_modulus_bulk=bulk,
+        poisson_ratio_layer=given["poisson_ratio_layer"],
+        poisson_ratio_bulk=given["poisson_ratio_bulk"],
+        layer_thickness=np.exp(given["layer_thickness"]),
     )
     pressing = _pressing(given)
     load = _BULK * _HEIGHT * np.exp(pressing)
     pull = np.expm1(given["pull"]) * _PULL * np.square(load) / _BULK
     gamma = np.ascontiguousarray(given["area_correction"])
     with np.errstate(all="ignore"):
-        flooded = np.asarray(mean_separation(load[:, None], surface, skin, gamma))[:, 0]
+        flooded = np.asarray(mean_separation(load[:, None], surface, skin=skin, area_correction=gamma))[:, 0]
         source = GapSource(surface, skin, gamma, "gaussian")
         end = _end(depth, np.log(flooded / _HEIGHT), pressing)
         return solve_curve(source, load, pull, flooded, flooded / 10, end), load, flooded

@@ -13,7 +13,7 @@ from skinbayes.contact import (
     LayeredSkin,
     mean_separation,
     relative_contact_area,
-    stress_variance,
+    twice_stress_variance,
 )
 from skinbayes.contact.gaps import CLOSURES
 from skinbayes.errors import InputError
@@ -30,7 +30,7 @@ _BEYOND = np.log(4.0)  # of ln film; the pull outgrows a film that is much thinn
 _NARROW = 1e-13  # m; in gaps up to it, which mean nothing, the area is linear and the film quadratic to 2e-5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class CapillaryState:
     """Skin held together by capillary bridges. All fields have the same shape.
 
@@ -66,7 +66,7 @@ class CapillaryState:
 
 
 def kelvin_gap(
-    kelvin_radius: ArrayLike, contact_angle_skin: ArrayLike, contact_angle_counterface: ArrayLike
+    kelvin_radius: ArrayLike, contact_angle_skin: ArrayLike, *, contact_angle_counterface: ArrayLike
 ) -> FloatArray:
     """Kelvin length, the largest gap that a bridge can span, ``d_K = r_K (cos θ1 + cos θ2)`` (Eq. 5 of the paper).
 
@@ -88,8 +88,8 @@ def kelvin_gap(
     Examples
     --------
     >>> from math import radians
-    >>> print(f"{kelvin_gap(1e-9, radians(80.0), 0.0):.4e} {kelvin_gap(1e-9, radians(80.0), radians(102.0)):.1f}")
-    1.1736e-09 0.0
+    >>> print(kelvin_gap(1e-9, radians(80.0), contact_angle_counterface=[0.0, radians(102.0)]))
+    [1.17364818e-09 0.00000000e+00]
     """
     radius = np.asarray(kelvin_radius, dtype=np.float64)
     with np.errstate(all="ignore"):
@@ -102,6 +102,7 @@ def kelvin_gap(
 def capillary_state(
     film_thickness: ArrayLike,
     nominal_pressure: ArrayLike,
+    *,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
     surface_tension: ArrayLike,
@@ -163,8 +164,9 @@ def capillary_state(
     --------
     >>> from math import radians
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> state = capillary_state(6e-6, 6830.0, named_surface("paper_reference"), wet, 0.0727, radians(80.0), 0.0)
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> state = capillary_state(6e-6, 6830.0, spectrum=named_surface("paper_reference"), skin=wet,
+    ...     surface_tension=0.0727, contact_angle_skin=radians(80.0), contact_angle_counterface=0.0)
     >>> print(f"{state.capillary_pressure / 6830.0:.3f} {state.mean_separation:.3e}")
     0.629 1.103e-05
     """
@@ -200,6 +202,7 @@ def capillary_state(
 def capillary_state_at_gap(
     kelvin_gap: ArrayLike,
     nominal_pressure: ArrayLike,
+    *,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
     surface_tension: ArrayLike,
@@ -250,9 +253,10 @@ def capillary_state_at_gap(
     --------
     >>> from math import radians
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> surface = named_surface("paper_reference")
-    >>> state = capillary_state_at_gap(14e-6, 6830.0, surface, wet, 0.0727, radians(80.0), 0.0)
+    >>> state = capillary_state_at_gap(14e-6, 6830.0, spectrum=surface, skin=wet, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0)
     >>> print(f"{state.film_thickness:.3e} {state.wet_area:.3f} {state.solutions:.0f}")
     5.596e-06 0.705 1
     """
@@ -330,9 +334,9 @@ def _flatten(
         map_spectrum(spectrum, flat), map_skin(skin, flat), flat(gamma) if gamma.ndim else gamma, closure
     )
     pressure = flat(pressure)
-    separation = mean_separation(pressure[:, None], source.spectrum, source.skin, source.area_correction)[
-        :, 0
-    ]
+    separation = mean_separation(
+        pressure[:, None], source.spectrum, skin=source.skin, area_correction=source.area_correction
+    )[:, 0]
     columns = films.shape[-1] if films.ndim else 1
     rows = np.broadcast_to(films, (*batch, columns)).reshape(len(pressure), columns)
     return _Case(source, pressure, flat(pull), separation, rows, (*batch, columns) if films.ndim else batch)
@@ -354,11 +358,11 @@ def _finish(
         return np.asarray(value.reshape(case.shape))[()]
 
     load, separation = case.pressure[:, None], case.separation[:, None]
-    variance = np.asarray(stress_variance(case.source.spectrum, case.source.skin))
+    twice_variance = np.asarray(twice_stress_variance(case.source.spectrum, case.source.skin))
     gamma = np.asarray(case.source.area_correction)
-    variance, gamma = (x[:, None] if x.ndim else x for x in (variance, gamma))
+    twice_variance, gamma = (x[:, None] if x.ndim else x for x in (twice_variance, gamma))
     pressure = load + attraction
-    area = relative_contact_area(pressure, variance, gamma)
+    area = relative_contact_area(pressure, twice_variance, area_correction=gamma)
     return CapillaryState(
         film_thickness=choose(solved.film * np.square(narrower), separation),
         kelvin_gap=choose(solved.gap * narrower, np.full_like(load, np.inf)),

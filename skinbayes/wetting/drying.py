@@ -14,6 +14,7 @@ from skinbayes.wetting.film_contact import FilmContact
 
 _SEARCH = 192
 _NO_SPREAD = 1e-12  # m
+_GONE = -40.0  # standard deviations below 0 at which nothing is left of a film
 _NO_PEAK = 1e-6  # height of a peak over the wet plateau, relative, below which there is none
 
 
@@ -46,7 +47,7 @@ class DryingFeatures(NamedTuple):
     peak_width : time between the half heights of the peak over the wet plateau, s; nan without a peak
     wet_plateau : μ of flooded skin, dimensionless
     dry_friction : μ of dry skin, dimensionless
-    dry_time : time at which the mean film is gone, s
+    dry_time : time at which the mean film is gone, s; nan if nothing evaporates
     """
 
     peak_time: FloatArray
@@ -60,6 +61,7 @@ class DryingFeatures(NamedTuple):
 def drying_curve(
     time: ArrayLike,
     wetting_time: ArrayLike,
+    *,
     initial_film: ArrayLike,
     evaporation_rate: ArrayLike,
     contact: FilmContact,
@@ -75,12 +77,12 @@ def drying_curve(
 
     Parameters
     ----------
-    time : t, s, shape ``(T,)`` or ``(..., T)``, or a scalar
-    wetting_time : t_wet, s, batch shape
-    initial_film : film right after wetting, m, ≥ 0, batch shape
+    time : t, s, shape ``(T,)`` or ``(..., T)``, or a scalar; may be infinite
+    wetting_time : t_wet, s, batch shape; inf is never
+    initial_film : film right after wetting, m, ≥ 0, batch shape; inf never dries
     evaporation_rate : ḋ, m/s, ≥ 0, batch shape
     contact : of `film_contact`, batch shape
-    frictional_shear_stress : σ_f, Pa, batch shape
+    frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     nominal_pressure : p0, Pa, > 0, batch shape
     film_spread : standard deviation of the film over the track, m, ≥ 0, batch shape. It smooths where skin floods and
         falls dry; without it friction has a kink and a jump there.
@@ -99,9 +101,13 @@ def drying_curve(
     >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> from skinbayes.wetting import film_contact
-    >>> skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    >>> contact = film_contact(6830.0, surface, skin, 0.0727, radians(80.0), 0.0, 1e9, 50e6)
-    >>> curve = drying_curve([0.0, 200.0, 500.0, 600.0], 30.0, 90e-6, 1.743e-7, contact, 15e6, 6830.0)
+    >>> surface = named_surface("paper_reference")
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> contact = film_contact(6830.0, surface, skin=skin, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0, young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6)
+    >>> curve = drying_curve([0.0, 200.0, 500.0, 600.0], 30.0, initial_film=90e-6, evaporation_rate=1.743e-7,
+    ...     contact=contact, frictional_shear_stress=15e6, nominal_pressure=6830.0)
     >>> print(curve.friction_coefficient.round(3))
     [0.3   1.423 2.28  0.3  ]
     """
@@ -110,28 +116,36 @@ def drying_curve(
     arguments = (wetting_time, initial_film, evaporation_rate, film_spread, nominal_pressure)
     start, film, rate, spread, load = (np.asarray(x, dtype=np.float64)[..., None] for x in arguments)
     with np.errstate(all="ignore"):
-        mean = np.where((film >= 0) & (rate >= 0) & (spread >= 0), film - rate * (times - start), np.nan)
+        possible = (film >= 0) & (rate >= 0) & (rate < np.inf) & (spread >= 0) & (spread < np.inf)
+        elapsed = np.maximum(times - start, 0.0)
+        mean = np.where(possible, film - np.where(rate > 0, rate * elapsed, 0.0 * np.isnan(elapsed)), np.nan)
         width = np.maximum(spread, _NO_SPREAD)
         wet = times >= start
         dry_area = np.asarray(contact.dry_area)[..., None]
-        area = np.where(wet, contact.average(mean, spread[..., 0])[0], dry_area + 0.0 * mean)
+        area = np.where(wet, contact.average(mean, spread[..., 0])[0], dry_area)
         low, high = contact.film[..., :1], contact.film[..., -1:]
         place = mean / width
-        film_left = mean * ndtr(place) + width * np.exp(-0.5 * np.square(place)) / np.sqrt(2 * np.pi)
-        friction = friction_coefficient(np.asarray(frictional_shear_stress)[..., None], area, load)
+        left = mean * ndtr(place) + width * np.exp(-0.5 * np.square(place)) / np.sqrt(2 * np.pi)
+        film_left = np.where(place < _GONE, 0.0, left)
+        friction = friction_coefficient(
+            np.asarray(frictional_shear_stress)[..., None], area, nominal_pressure=load
+        )
         found = (
-            np.where(wet, film_left, 0.0 * mean),
+            np.where(wet, film_left, 0.0),
             area,
             friction,
-            np.where(wet, ndtr((mean - high) / width), 0.0 * mean),
-            np.where(wet, ndtr((low - mean) / width), 1.0 + 0.0 * mean),
+            np.where(wet, ndtr((mean - high) / width), 0.0),
+            np.where(wet, ndtr((low - mean) / width), 1.0),
         )
-        return DryingCurve(*((x[..., 0] if scalar else x.copy())[()] for x in np.broadcast_arrays(*found)))
+        known = ~np.isnan(mean + area + friction)
+        shown = np.broadcast_arrays(*(np.where(known, x, np.nan) for x in found))
+        return DryingCurve(*((x[..., 0] if scalar else x.copy())[()] for x in shown))
 
 
 def drying_features(
     wetting_time: ArrayLike,
     initial_film: ArrayLike,
+    *,
     evaporation_rate: ArrayLike,
     contact: FilmContact,
     frictional_shear_stress: ArrayLike,
@@ -145,9 +159,9 @@ def drying_features(
     wetting_time : t_wet, s, batch shape
     initial_film : film right after wetting, m, ≥ 0, batch shape; if it is thinner than the film of the peak the peak has passed,
         and its time lies before ``wetting_time``
-    evaporation_rate : ḋ, m/s, > 0, batch shape
+    evaporation_rate : ḋ, m/s, ≥ 0, batch shape; at 0 there is neither a peak nor a time at which the skin is dry
     contact : of `film_contact`, batch shape
-    frictional_shear_stress : σ_f, Pa, batch shape
+    frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     nominal_pressure : p0, Pa, > 0, batch shape
     film_spread : standard deviation of the film over the track, m, ≥ 0, batch shape
 
@@ -170,16 +184,23 @@ def drying_features(
     >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> from skinbayes.wetting import film_contact
-    >>> skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    >>> contact = film_contact(6830.0, surface, skin, 0.0727, radians(80.0), 0.0, 1e9, 50e6)
-    >>> features = drying_features(30.0, 90e-6, 1.743e-7, contact, 15e6, 6830.0)
+    >>> surface = named_surface("paper_reference")
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> contact = film_contact(6830.0, surface, skin=skin, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0, young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6)
+    >>> features = drying_features(30.0, 90e-6, evaporation_rate=1.743e-7, contact=contact,
+    ...     frictional_shear_stress=15e6, nominal_pressure=6830.0)
     >>> print(f"{features.peak_time:.1f} {features.peak_friction:.3f} {features.peak_width:.1f} {features.dry_time:.1f}")
     513.2 2.319 66.5 546.4
     """
     arguments = (wetting_time, initial_film, evaporation_rate, film_spread)
     start, film, rate, spread = (np.asarray(x, dtype=np.float64) for x in arguments)
     with np.errstate(all="ignore"):
-        possible = (film >= 0) & (rate > 0) & (spread >= 0)
+        possible = (
+            (film >= 0) & (film < np.inf) & (rate >= 0) & (rate < np.inf) & (spread >= 0) & (spread < np.inf)
+        )
+        possible = possible & np.isfinite(start)
         film, spread = np.where(possible, film, np.nan), np.where(possible, spread, np.nan)
         floor, flooded = (x + 0.0 * film for x in (contact.film[..., 0], contact.film[..., -1]))
         plateau, dry = contact.area[..., -1] + 0.0 * film, contact.dry_area + 0.0 * film
@@ -206,15 +227,18 @@ def drying_features(
         last = np.where(under.any(axis=-1), _SEARCH - 1 - under[..., ::-1].argmax(axis=-1), 0)[..., None]
         edge = np.take_along_axis(grid, last, axis=-1)[..., 0]
         fall = falling_root(lambda x: -above(x), edge, np.minimum(edge + (high - low) / (_SEARCH - 1), peak))
-        there = height > plateau * (1 + _NO_PEAK)
+        dries = possible & (rate > 0)
+        there = dries & (height > plateau * (1 + _NO_PEAK))
         friction = [
-            friction_coefficient(frictional_shear_stress, x, nominal_pressure) for x in (height, plateau, dry)
+            friction_coefficient(frictional_shear_stress, x, nominal_pressure=nominal_pressure)
+            for x in (height, plateau, dry)
         ]
-        return DryingFeatures(
-            np.where(there, start + (film - peak) / rate, np.nan)[()],
-            np.where(there, friction[0], np.nan)[()],
-            np.where(there, (rise - fall) / rate, np.nan)[()],
-            friction[1],
-            friction[2],
-            np.where(possible, start + film / rate, np.nan)[()],
+        found = (
+            np.where(there, start + (film - peak) / rate, np.nan),
+            np.where(there, friction[0], np.nan),
+            np.where(there, (rise - fall) / rate, np.nan),
+            np.where(possible, friction[1], np.nan),
+            np.where(possible, friction[2], np.nan),
+            np.where(dries, start + film / rate, np.nan),
         )
+        return DryingFeatures(*(x.copy()[()] for x in np.broadcast_arrays(*found)))

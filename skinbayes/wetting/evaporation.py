@@ -20,6 +20,7 @@ AIR_SPEED_COEFFICIENT = 7.8e-5
 def evaporation_rate_from_pressures(
     vapour_pressure_surface: ArrayLike,
     vapour_pressure_air: ArrayLike,
+    *,
     air_speed: ArrayLike = 0.0,
     latent_heat: ArrayLike = LATENT_HEAT_OF_PAPER,
 ) -> FloatArray:
@@ -64,9 +65,10 @@ def evaporation_rate_from_pressures(
 
 
 def evaporation_rate(
-    surface_temperature: ArrayLike,
-    air_temperature: ArrayLike,
     relative_humidity: ArrayLike,
+    surface_temperature: ArrayLike,
+    *,
+    air_temperature: ArrayLike,
     air_speed: ArrayLike = 0.0,
     latent_heat: ArrayLike = LATENT_HEAT_OF_PAPER,
 ) -> FloatArray:
@@ -77,9 +79,9 @@ def evaporation_rate(
 
     Parameters
     ----------
-    surface_temperature : temperature of the water on the skin, K, any shape
+    relative_humidity : RH of the room, dimensionless, 0 … 1, any shape
+    surface_temperature : temperature of the water on the skin, K, broadcasts
     air_temperature : temperature of the room, K, broadcasts
-    relative_humidity : RH of the room, dimensionless, 0 … 1, broadcasts
     air_speed : v, m/s, ≥ 0, broadcasts
     latent_heat : Y, J/kg, > 0, broadcasts
 
@@ -98,7 +100,7 @@ def evaporation_rate(
 
     Examples
     --------
-    >>> print(f"{evaporation_rate(308.15, 293.15, 0.5):.3e}")
+    >>> print(f"{evaporation_rate(0.5, 308.15, air_temperature=293.15):.3e}")
     1.747e-07
     """
     humidity = np.asarray(relative_humidity, dtype=np.float64)
@@ -106,12 +108,12 @@ def evaporation_rate(
         humidity = np.where((humidity >= 0) & (humidity <= 1), humidity, np.nan)
         air = humidity * saturation_vapour_pressure(air_temperature)
     return evaporation_rate_from_pressures(
-        saturation_vapour_pressure(surface_temperature), air, air_speed, latent_heat
+        saturation_vapour_pressure(surface_temperature), air, air_speed=air_speed, latent_heat=latent_heat
     )
 
 
 def film_of_droplet(
-    droplet_volume: ArrayLike, stroke_length: ArrayLike, contact_width: ArrayLike
+    droplet_volume: ArrayLike, stroke_length: ArrayLike, *, contact_width: ArrayLike
 ) -> FloatArray:
     """Average film of a droplet that is spread over the sliding track, ``ΔV/(L D)`` (Sect. 5 of the paper).
 
@@ -136,11 +138,11 @@ def film_of_droplet(
 
     Examples
     --------
-    >>> print(f"{film_of_droplet(50e-9, 0.08, 0.008):.3e}")
+    >>> print(f"{film_of_droplet(50e-9, 0.08, contact_width=0.008):.3e}")
     7.812e-05
     >>> from skinbayes.contact import reduced_modulus, sphere_contact
-    >>> width = 2 * sphere_contact(0.5, 8e-3, reduced_modulus(20e3, 0.5)).contact_radius
-    >>> print(f"{width:.2e} {film_of_droplet(50e-9, 0.08, width):.3e}")
+    >>> width = 2 * sphere_contact(0.5, 8e-3, reduced_modulus=reduced_modulus(20e3, 0.5)).contact_radius
+    >>> print(f"{width:.2e} {film_of_droplet(50e-9, 0.08, contact_width=width):.3e}")
     9.65e-03 6.473e-05
     """
     volume, length, width = (

@@ -12,8 +12,8 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
     LayeredSkin,
-    stress_variance,
     total_contact_area,
+    twice_stress_variance,
 )
 from skinbayes.contact.gaps import CLOSURES
 from skinbayes.errors import InputError
@@ -22,19 +22,20 @@ from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._bridged import Bridged
 from skinbayes.wetting._chebyshev import coefficients, lobatto, series, values_between
 from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
+from skinbayes.wetting._types import BoolArray
 from skinbayes.wetting._uneven import uneven_average
 from skinbayes.wetting.bridge_table import BridgeTable
 from skinbayes.wetting.capillary import cosine_sum
-from skinbayes.wetting.humidity import softened_modulus
 
 FILM_FLOOR = 1e-7
 """Film below which skin counts as dry, m."""
 
 _FILMS, _POINTS, _MODULI = 32, 256, 12
 _NO_SPREAD = 1e-12  # m
+_CLOSED = 1e-30  # stands for a flooded film of 0, m: where contact is complete there is no gap
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FilmContact:
     """Contact area against the local thickness of the film: dry below the first film, flooded from the last on.
 
@@ -58,19 +59,20 @@ class FilmContact:
 
         Parameters
         ----------
-        film : mean film, m, may be negative after the film is gone, shape ``S + (T,)``
-        spread : standard deviation of the film over the track, m, shape ``S``
+        film : mean film, m, may be negative after the film is gone, and infinite, shape ``S + (T,)``
+        spread : standard deviation of the film over the track, m, ≥ 0, shape ``S``
 
         Returns
         -------
-        area, slope : dimensionless and 1/m, shape ``S + (T,)``
+        area, slope : dimensionless and 1/m, shape ``S + (T,)``; nan where an argument is impossible
         """
-        films, width = np.asarray(film), np.maximum(np.asarray(spread), _NO_SPREAD)
+        films, wide = np.asarray(film, dtype=np.float64), np.asarray(spread, dtype=np.float64)
+        width = np.where((wide >= 0) & (wide < np.inf), np.maximum(wide, _NO_SPREAD), np.nan)
         batch = np.broadcast_shapes(films.shape[:-1], self.dry_area.shape, width.shape)
         shape = (*batch, films.shape[-1])
         place, wide = (
-            np.broadcast_to(films, shape).reshape(-1, shape[-1]),
-            np.broadcast_to(width[..., None], shape).reshape(-1, shape[-1]),
+            np.broadcast_to(films, shape).reshape(prod(batch), shape[-1]),
+            np.broadcast_to(width[..., None], shape).reshape(prod(batch), shape[-1]),
         )
         edge, local = (
             np.broadcast_to(x, (*batch, x.shape[-1])).reshape(-1, x.shape[-1]) for x in (self.film, self.area)
@@ -83,6 +85,7 @@ class FilmContact:
 def film_contact(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
+    *,
     skin: LayeredSkin,
     surface_tension: ArrayLike,
     contact_angle_skin: ArrayLike,
@@ -123,7 +126,8 @@ def film_contact(
 
     Returns
     -------
-    contact : `FilmContact` with S the batch shape; nan where a parameter is impossible
+    contact : `FilmContact` with S the batch shape; nan where a parameter is impossible, and but for the dry area where the pull
+        on the way down to the floor exceeds the load more than a thousand times
 
     Notes
     -----
@@ -140,10 +144,10 @@ def film_contact(
     --------
     >>> from math import radians
     >>> from skinbayes.roughness import named_surface
-    >>> wet = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> contact = film_contact(
-    ...     6830.0, named_surface("paper_reference"), wet, 0.0727, radians(80.0), 0.0, 1e9, 50e6
-    ... )
+    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> contact = film_contact(6830.0, named_surface("paper_reference"), skin=wet, surface_tension=0.0727,
+    ...     contact_angle_skin=radians(80.0), contact_angle_counterface=0.0, young_modulus_layer_dry=1e9,
+    ...     yield_stress=50e6)
     >>> print(f"{contact.dry_area:.3e} {contact.area.max():.3e} {contact.area[-1]:.3e}")
     1.366e-04 1.056e-03 6.481e-04
     """
@@ -177,32 +181,44 @@ def film_contact(
         pull = np.where(tension >= 0, tension, np.nan) * np.maximum(cosine_sum(first, second), 0.0)
         surface, gamma = map_spectrum(spectrum, flat), flat(gamma) if gamma.size > 1 else gamma.reshape(())
         height = np.broadcast_to(rms_height(surface), (prod(batch),))
-        load, pull, dry, limit = (flat(x) for x in (np.where(load > 0, load, np.nan), pull, dry, limit))
+        load, pull, dry, limit = (
+            flat(x) for x in (np.where((load > 0) & (load < np.inf), load, np.nan), pull, dry, limit)
+        )
         flat_skin = map_skin(skin, flat)
         bridged = Bridged(load, pull, GapSource(surface, flat_skin, gamma, closure), height, table)
 
         lowest = np.where(flat(floor) > 0, flat(floor), np.nan)
         if half is None and closure == "gaussian":
             films, log_pressure = bridged.path(_FILMS, lowest)
-            log_area = _log_area(bridged.source, limit, np.exp(log_pressure))
+            films = np.where(films[:, -1:] == 0, _CLOSED * (1 + lobatto(_FILMS)), films)
+            log_area = _finer(_log_area(bridged.source, limit, np.exp(log_pressure)))
             log_films = _finer(np.log(films))
             grid = _ascending(np.exp(log_films), films)
         else:
-            flooded = bridged.flooded()[0]
+            flooded = np.maximum(bridged.flooded()[0], _CLOSED)
             start = np.minimum(lowest, flooded / 2)[:, None]
             films = start + (flooded[:, None] - start) * lobatto(_FILMS)
             grid = start + (flooded[:, None] - start) * lobatto(_POINTS)
 
             log_area = (
-                _log_area(bridged.source, limit, np.exp(bridged.log_pressure(films)))
+                _finer(_log_area(bridged.source, limit, np.exp(bridged.log_pressure(films))))
                 if half is None
-                else _hardened(films, bridged, dry, limit, flat(half), flat(power))
+                else _hardened(films, grid, bridged, dry, limit, flat(half), flat(power))
             )
-        fine = np.exp(_finer(log_area))
+        fine = np.exp(log_area)
         stiff = bridged.with_layer(dry)
         dry_area = np.exp(_log_area(stiff.source, limit, load[:, None]))[:, 0]
+        doubtful = (
+            pull
+            + lowest
+            + (0.0 if half is None else np.where(_possible(flat(half), flat(power)), 0.0, np.nan))
+        )
+        dry_area = np.where(np.isnan(doubtful), np.nan, dry_area)
+        fine = np.where(np.isnan(dry_area)[:, None], np.nan, fine)
         grid, fine = (np.where(np.isfinite(x), x, np.nan).reshape(*batch, _POINTS) for x in (grid, fine))
-        return FilmContact(grid, fine, np.broadcast_to(dry_area, load.shape).reshape(batch)[()])
+        return FilmContact(
+            film=grid, area=fine, dry_area=np.broadcast_to(dry_area, load.shape).reshape(batch)[()]
+        )
 
 
 @lru_cache(maxsize=1)
@@ -218,30 +234,37 @@ def _finer(values: FloatArray) -> FloatArray:
 
 
 def _ascending(grid: FloatArray, films: FloatArray) -> FloatArray:
-    """Films from the first to the last of ``films`` that never fall: towards the flooded one they meet to the last digits."""
-    least = films[:, :1] + 1e-8 * films[:, -1:] * np.arange(_POINTS)
-    grid = np.maximum(np.maximum.accumulate(grid, axis=1), least)
-    grid = np.minimum(grid, films[:, -1:] * (1 - 1e-8 * np.arange(_POINTS)[::-1]))
+    """Films from the first to the last of ``films`` that always rise: towards the flooded one they meet to the last digits."""
+    step = 1e-8 * films[:, -1:] * np.arange(_POINTS)
     grid[:, 0] = films[:, 0]
+    grid = np.maximum.accumulate(grid - step, axis=1) + step
+    grid = np.minimum(grid, films[:, -1:] * (1 - 1e-8 * np.arange(_POINTS)[::-1]))
     return grid
 
 
 def _log_area(source: GapSource, limit: FloatArray, pressure: FloatArray) -> FloatArray:
     """ln A/A0 under pressures, Pa, of shape ``(B, F)`` with the yield stress ``limit``, Pa, of shape ``(B,)``."""
-    variance = np.asarray(stress_variance(source.spectrum, source.skin))
-    parts = (x[..., None] for x in (variance, limit, np.asarray(source.area_correction)))
-    return np.log(total_contact_area(pressure, *parts))
+    twice_variance = np.asarray(twice_stress_variance(source.spectrum, source.skin))
+    return np.log(
+        total_contact_area(
+            pressure,
+            twice_variance[..., None],
+            yield_stress=limit[..., None],
+            area_correction=np.asarray(source.area_correction)[..., None],
+        )
+    )
 
 
 def _hardened(
     films: FloatArray,
+    grid: FloatArray,
     bridged: Bridged,
     dry: FloatArray,
     limit: FloatArray,
     half: FloatArray,
     power: FloatArray,
 ) -> FloatArray:
-    """ln A/A0 at films of shape ``(B, n)`` whose layer hardens, interpolated between skins of a few moduli."""
+    """ln A/A0 on a grid of films of shape ``(B, points)`` whose layer hardens, between skins of a few moduli and ``films``."""
     wet = np.broadcast_to(np.asarray(bridged.source.skin.young_modulus_layer), dry.shape)
     # each skin with all its moduli, one after the other
     rows = np.repeat(np.arange(dry.size), _MODULI)
@@ -250,12 +273,15 @@ def _hardened(
     # without any bridges all films press alike
     distinct = films if (bridged.pull > 0).any() else films[:, :1]
     pressure = np.exp(many.log_pressure(distinct[rows]))
-    curves = _log_area(many.source, limit[rows], pressure).reshape(dry.size, _MODULI, -1)
-    curves = np.broadcast_to(np.moveaxis(curves, 1, 2), (*films.shape, _MODULI))
-    parts = coefficients(curves.reshape(-1, _MODULI, 1))[..., 0]
-    wetness = films / np.where(half > 0, half, np.nan)[..., None]
-    one = np.ones(())
-    share = softened_modulus(one, np.e * one, wetness, np.where(power > 0, power, np.nan)[..., None])
-    wet_share = np.log(share)
-    left = 1 - wet_share / wet_share[..., -1:]  # 0 where the gap is flooded
-    return series(parts[..., None], 2 * left.reshape(-1, 1) - 1).reshape(films.shape)
+    areas = np.broadcast_to(_log_area(many.source, limit[rows], pressure), (rows.size, _FILMS))
+    curves = _finer(areas).reshape(dry.size, _MODULI, _POINTS)
+    parts = coefficients(np.ascontiguousarray(np.moveaxis(curves, 1, 2)).reshape(-1, _MODULI, 1))[..., 0]
+    # ln of the wet share w^k/(1 + w^k) of ln E0, which may be too small for a number itself
+    steep = np.where(_possible(half, power), power, np.nan)[:, None]
+    log_share = -np.logaddexp(0.0, steep * np.log(half[:, None] / grid))
+    left = -np.expm1(log_share - log_share[:, -1:])  # 0 where the gap is flooded
+    return series(parts[..., None], 2 * left.reshape(-1, 1) - 1).reshape(grid.shape)
+
+
+def _possible(half: FloatArray, power: FloatArray) -> BoolArray:
+    return (half > 0) & (half < np.inf) & (power > 0) & (power < np.inf)

@@ -37,7 +37,7 @@ _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 Groups = Mapping[str, FloatArray]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class HumidTable:
     """Share of the area that bridges can span, for skins in a box of dimensionless groups.
 
@@ -111,7 +111,7 @@ class HumidTable:
 
 
 def humid_groups(
-    pressure: FloatArray, gap: FloatArray, height: FloatArray, skin: LayeredSkin
+    pressure: FloatArray, gap: FloatArray, *, height: FloatArray, skin: LayeredSkin
 ) -> dict[str, FloatArray]:
     """Groups of parameters on which the share of bridged gaps depends, up to scale (from Eqs. 3 to 7 of the paper).
 
@@ -135,8 +135,8 @@ def humid_groups(
 
     Examples
     --------
-    >>> skin = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> groups = humid_groups(*(np.array([x]) for x in (6830.0, 1e-9, 22.4e-6)), skin)
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> groups = humid_groups(np.array([6830.0]), np.array([1e-9]), height=np.array([22.4e-6]), skin=skin)
     >>> print({name: float(value[0].round(3)) for name, value in groups.items()})
     {'load': 9.632, 'gap': -10.017, 'stiffness': 5.858, 'layer_thickness': -10.82}
     """
@@ -152,6 +152,7 @@ def humid_groups(
 def humid_table(
     low: Mapping[str, float],
     high: Mapping[str, float],
+    *,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
     area_correction: FloatArray,
@@ -187,11 +188,12 @@ def humid_table(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
-    >>> skin = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> groups = humid_groups(*(np.array([x]) for x in (6830.0, 1e-9, 22.4e-6)), skin)
+    >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> groups = humid_groups(np.array([6830.0]), np.array([1e-9]), height=np.array([22.4e-6]), skin=skin)
     >>> low = {name: float(value[0]) for name, value in groups.items()}
     >>> high = {**low, "load": low["load"] + 1, "gap": low["gap"] + 1}
-    >>> table = humid_table(low, high, named_surface("paper_reference"), skin, np.array(0.42))
+    >>> table = humid_table(low, high, spectrum=named_surface("paper_reference"), skin=skin,
+    ...     area_correction=np.array(0.42))
     >>> print(table.axes["load"][1], f"{table.share(groups)[0]:.3e}")
     14 1.428e-04
     """
@@ -209,7 +211,7 @@ def humid_table(
         surface = replace(spectrum, rms_height=_HEIGHT)
     elif isinstance(spectrum, TabulatedSpectrum):
         scale = spectrum.scale * (_HEIGHT / rms_height(spectrum)) ** 2
-        surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale)
+        surface = TabulatedSpectrum(spectrum.wavevector, spectrum.node_power, scale=scale)
     else:
         return None
     pressure, gap = _BULK * _HEIGHT * np.exp(nodes["load"]), _HEIGHT * np.exp(nodes["gap"])
@@ -235,4 +237,6 @@ def humid_table(
     grid = np.moveaxis(values.reshape(*shape, pressure.size, gap.size), (2, 3), (0, 1))
     axes = {name: (float(x[0]), x.size) for name, x in nodes.items() if x.size > 1}
     log_share = np.log(np.maximum(grid, 0.0) + _LITTLE).reshape([count for _, count in axes.values()])
-    return HumidTable(dict(low), dict(high), axes, spline_filter(log_share, order=3))
+    return HumidTable(
+        low=dict(low), high=dict(high), axes=axes, coefficients=spline_filter(log_share, order=3)
+    )

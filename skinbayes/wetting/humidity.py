@@ -56,7 +56,7 @@ def kelvin_radius(relative_humidity: ArrayLike, temperature: ArrayLike) -> Float
 
 
 def humidity_at_surface(
-    relative_humidity: ArrayLike, air_temperature: ArrayLike, surface_temperature: ArrayLike
+    relative_humidity: ArrayLike, surface_temperature: ArrayLike, *, air_temperature: ArrayLike
 ) -> FloatArray:
     """Relative humidity at a surface that is warmer or colder than the air (for Appendix A of the paper).
 
@@ -66,8 +66,8 @@ def humidity_at_surface(
     Parameters
     ----------
     relative_humidity : RH of the air, dimensionless, 0 … 1, any shape
-    air_temperature : T_air, K, broadcasts
     surface_temperature : T_surface, K, broadcasts
+    air_temperature : T_air, K, broadcasts
 
     Returns
     -------
@@ -85,8 +85,8 @@ def humidity_at_surface(
 
     Examples
     --------
-    >>> print(f"{humidity_at_surface(0.5, 293.15, 305.15):.4f} {humidity_at_surface(0.9, 293.15, 288.15):.0f}")
-    0.2457 1
+    >>> print(humidity_at_surface([0.5, 0.9], [305.15, 288.15], air_temperature=293.15).round(4))
+    [0.2457 1.    ]
     """
     humidity = np.asarray(relative_humidity, dtype=np.float64)
     air, surface = (saturation_vapour_pressure(x) for x in (air_temperature, surface_temperature))
@@ -115,7 +115,7 @@ def is_below_molecule(kelvin_gap: ArrayLike) -> FloatArray:
     Examples
     --------
     >>> from math import radians
-    >>> gap = kelvin_gap(kelvin_radius([0.1, 0.2, 0.5], 293.15), radians(80.0), 0.0)
+    >>> gap = kelvin_gap(kelvin_radius([0.1, 0.2, 0.5], 293.15), radians(80.0), contact_angle_counterface=0.0)
     >>> print(is_below_molecule(gap))
     [1. 0. 0.]
     """
@@ -126,6 +126,7 @@ def is_below_molecule(kelvin_gap: ArrayLike) -> FloatArray:
 def capillary_state_in_humid_air(
     relative_humidity: ArrayLike,
     temperature: ArrayLike,
+    *,
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
@@ -175,10 +176,10 @@ def capillary_state_in_humid_air(
     --------
     >>> from math import radians
     >>> from skinbayes.roughness import named_surface
-    >>> stiff = LayeredSkin(70e6, 20e3, 0.5, 0.5, 20e-6)
-    >>> state = capillary_state_in_humid_air(
-    ...     [0.3, 0.9], 293.15, 6830.0, named_surface("paper_reference"), stiff, radians(80.0), 0.0
-    ... )
+    >>> stiff = LayeredSkin(young_modulus_layer=70e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    >>> state = capillary_state_in_humid_air([0.3, 0.9], 293.15, nominal_pressure=6830.0,
+    ...     spectrum=named_surface("paper_reference"), skin=stiff, contact_angle_skin=radians(80.0),
+    ...     contact_angle_counterface=0.0)
     >>> print(np.log10(state.relative_contact_area).round(2))
     [-4.09 -4.13]
     """
@@ -188,21 +189,33 @@ def capillary_state_in_humid_air(
             np.asarray(x, dtype=np.float64)[..., None]
             for x in (kelvin, contact_angle_skin, contact_angle_counterface)
         )
-        gap = kelvin_gap(kelvin_radius(humidity, each), first, second)
+        gap = kelvin_gap(kelvin_radius(humidity, each), first, contact_angle_counterface=second)
         tension = surface_tension_of_water(kelvin)
     state = capillary_state_at_gap(
-        gap, nominal_pressure, spectrum, skin, tension, contact_angle_skin, contact_angle_counterface, area_correction,
-        closure, branch, count,
-    )  # fmt: skip
+        gap,
+        nominal_pressure,
+        spectrum=spectrum,
+        skin=skin,
+        surface_tension=tension,
+        contact_angle_skin=contact_angle_skin,
+        contact_angle_counterface=contact_angle_counterface,
+        area_correction=area_correction,
+        closure=closure,
+        branch=branch,
+        count=count,
+    )
     # one humidity has no axis of its own
     return (
-        state if humidity.ndim else CapillaryState(*(getattr(state, x.name)[..., 0] for x in fields(state)))
+        state
+        if humidity.ndim
+        else CapillaryState(**{x.name: getattr(state, x.name)[..., 0] for x in fields(state)})
     )
 
 
 def young_modulus_at_humidity(
     relative_humidity: ArrayLike,
     young_modulus_dry: ArrayLike,
+    *,
     young_modulus_wet: ArrayLike,
     transition_humidity: ArrayLike,
     sharpness: ArrayLike,
@@ -237,7 +250,8 @@ def young_modulus_at_humidity(
 
     Examples
     --------
-    >>> moduli = young_modulus_at_humidity([0.0, 0.5, 0.7, 0.9, 1.0], 1e9, 7e6, 0.7, 1.5)
+    >>> moduli = young_modulus_at_humidity([0.0, 0.5, 0.7, 0.9, 1.0], 1e9, young_modulus_wet=7e6,
+    ...     transition_humidity=0.7, sharpness=1.5)
     >>> print((moduli / 1e6).round(1))
     [1000.   337.2   83.7   12.5    7. ]
     """

@@ -10,7 +10,7 @@ from skinbayes.errors import InputError
 
 
 def young_modulus_from_table(
-    relative_humidity: ArrayLike, table_humidity: ArrayLike, table_modulus: ArrayLike
+    relative_humidity: ArrayLike, table_humidity: ArrayLike, *, table_modulus: ArrayLike
 ) -> FloatArray:
     """Young's modulus of the stratum corneum from a table of your own, ln E0 interpolated against RH (for Fig. 17 of the paper).
 
@@ -37,7 +37,8 @@ def young_modulus_from_table(
 
     Examples
     --------
-    >>> moduli = young_modulus_from_table([0.3, 0.6, 0.75, 0.99], [0.3, 0.6, 0.9], [1e9, 4e8, 1e7])
+    >>> moduli = young_modulus_from_table([0.3, 0.6, 0.75, 0.99], [0.3, 0.6, 0.9], table_modulus=[1e9, 4e8,
+    ...     1e7])
     >>> print((moduli / 1e6).round(1))
     [1000.   400.    99.3    nan]
     """

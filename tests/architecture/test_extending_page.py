@@ -32,7 +32,7 @@ AFTER = {
     """,
     "A noise family": """
         from scipy import stats
-        problem = sb.build_problem("constant", {"friction_coefficient": [0.5, 0.8]}, 
+        problem = sb.build_problem("constant", {"friction_coefficient": [0.5, 0.8]},
             noise={"family": "laplace", "noise_scale": 0.1}, parameters={"typical_friction_coefficient": {"uniform": [0, 2]}})
         assert np.isclose(problem.log_likelihood([0.6]), stats.laplace.logpdf([0.5, 0.8], 0.6, 0.06).sum())
     """,
@@ -117,7 +117,8 @@ def test_an_installed_package_offers_its_model_to_the_command_line(
     start = f"import sys; sys.path.insert(0, {str(site)!r}); from skinbayes.cli import main; "
     for command in (["check", "cream.toml"], ["show", "cream.csv"], ["check", "forearm-glass"]):
         done = subprocess.run(
-            [sys.executable, "-c", f"{start}sys.argv[1:] = {command}; main()"], cwd=tmp_path, capture_output=True, text=True, timeout=300
+            [sys.executable, "-c", f"{start}sys.argv[1:] = {command}; main()"],
+                cwd=tmp_path, capture_output=True, text=True, timeout=300,
         )  # fmt: skip
         expected = 0 if command[1] != "cream.toml" else status
         assert done.returncode == expected, done.stderr

@@ -6,8 +6,10 @@ import ast
 import inspect
 import re
 from collections.abc import Iterator
+from dataclasses import is_dataclass
 from importlib import import_module
 from inspect import cleandoc
+from itertools import combinations
 from typing import Any
 
 import pytest
@@ -164,26 +166,71 @@ def test_physics_shows_a_checked_example(name: str) -> None:
     assert ">>> " in (PHYSICS[name].__doc__ or ""), f"{name}: no example"
 
 
-ORDER = (
-    ("normal_force", "sphere_radius"),
-    ("normal_force", "radius_along", "radius_across"),
-    ("load_per_length", "cylinder_radius"),
-    ("frictional_shear_stress", "nominal_pressure"),
-    ("nominal_pressure", "spectrum", "skin"),
-    ("contact_angle_skin", "contact_angle_counterface"),
+SIGNATURES = {
+    name: tuple(inspect.signature(found).parameters.values())
+    for name, found in PHYSICS.items()
+    if not getattr(found, "_is_protocol", False)
+}
+"""Arguments of functions and constructors; those of named tuples are the fields of a result."""
+
+METHODS = {
+    f"{name}.{method}": tuple(inspect.signature(getattr(found, method)).parameters.values())[
+        not isinstance(plain, classmethod) :
+    ]
+    for name, found in PHYSICS.items()
+    if isinstance(found, type)
+    for method, plain in vars(found).items()
+    if method[0] != "_" and (inspect.isfunction(plain) or isinstance(plain, classmethod))
+}
+CALLED = METHODS | {
+    name: arguments
+    for name, arguments in SIGNATURES.items()
+    if not (isinstance(PHYSICS[name], type) and issubclass(PHYSICS[name], tuple))
+}
+
+
+def is_positional(argument: inspect.Parameter) -> bool:
+    return argument.kind in (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+
+
+@pytest.mark.parametrize("name", sorted(CALLED))
+def test_arguments_beyond_the_first_two_need_their_name(name: str) -> None:
+    positional = [argument.name for argument in CALLED[name] if is_positional(argument)]
+    assert len(positional) <= 2
+    found = PHYSICS.get(name)
+    if is_dataclass(found) and "__init__" not in inspect.getsource(found):
+        assert len(CALLED[name]) <= 2 or len(positional) <= 1, "fields that could be taken for each other"
+
+
+def disagreements(signatures: dict[str, list[str]]) -> list[str]:
+    """Pairs of names that two signatures have in different order."""
+    orders: dict[tuple[str, str], str] = {}
+    for name, arguments in signatures.items():
+        for pair in combinations(arguments, 2):
+            orders.setdefault(pair, name)
+    return [
+        f"{orders[a, b]}: {a}, {b}; {orders[b, a]}: {b}, {a}" for a, b in orders if a < b and (b, a) in orders
+    ]
+
+
+def test_arguments_of_one_name_stand_in_one_order() -> None:
+    assert not disagreements({name: [x.name for x in arguments] for name, arguments in SIGNATURES.items()})
+    assert disagreements({"one": ["a", "b", "c"], "other": ["c", "a"]}) == ["one: a, c; other: c, a"]
+
+
+KINDS = (
+    ("normal_force", "load_per_length", "mean_pressure"),
+    ("sphere_radius", "cylinder_radius", "radius_along", "radius_across", "effective_contact_radius"),
+    ("reduced_modulus",),
 )
-"""Arguments that siblings take: numbers that could be taken for each other stand in one order."""
+"""Arguments of one kind under several names: load, then shape, then stiffness."""
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_arguments_of_siblings_stand_in_one_order(name: str) -> None:
-    arguments = [
-        argument
-        for argument, found in inspect.signature(PHYSICS[name]).parameters.items()
-        if found.kind is not inspect.Parameter.KEYWORD_ONLY
-    ]
-    for order in ORDER:
-        assert [a for a in arguments if a in order] == [a for a in order if a in arguments], name
+def test_arguments_of_one_kind_stand_in_one_order(name: str) -> None:
+    rank = {argument: place for place, kind in enumerate(KINDS) for argument in kind}
+    ranks = [rank[argument.name] for argument in SIGNATURES[name] if argument.name in rank]
+    assert ranks == sorted(ranks)
 
 
 def test_what_could_be_exchanged_needs_its_name() -> None:
@@ -192,7 +239,10 @@ def test_what_could_be_exchanged_needs_its_name() -> None:
     from skinbayes.lubrication import lubricated_films, stribeck_curve
     from skinbayes.roughness import named_surface
 
-    skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    skin, surface = (
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
+        named_surface("paper_reference"),
+    )
     with pytest.raises(TypeError, match="positional"):
         stribeck_curve([1e-3], 8e-3, 0.2, skin, surface, 15e6)  # type: ignore[misc]
     with pytest.raises(TypeError, match="positional"):

@@ -86,7 +86,9 @@ def test_warm_skin_sees_drier_air(capsys):
         return outcome.document()["prediction"]["friction_coefficient"][0]
 
     warm = friction("relative_humidity=90 %", "air_temperature=20 degC", "surface_temperature=32 degC")
-    humidity = float(humidity_at_surface(0.9, 293.15, 305.15))
+    humidity = float(
+        humidity_at_surface(relative_humidity=0.9, air_temperature=293.15, surface_temperature=305.15)
+    )
     assert warm == pytest.approx(friction(f"relative_humidity={humidity!r}", "temperature=32 degC"), rel=1e-9)
     # at 99 % in the air the layer of cold skin is soft, that of warm skin is not
     wet = friction("relative_humidity=99 %", "air_temperature=20 degC", "surface_temperature=20 degC")

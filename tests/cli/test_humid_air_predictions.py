@@ -116,10 +116,31 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
     found = predict("humid-air" if closure == "gaussian" else "humid-air:sharp", *words)[1]
     pull, radius = found["capillary_pressure"][0], found["kelvin_radius"][0]
     body = PlainContact(**plain)
-    skin = LayeredSkin(body.layer, body.bulk, body.nu_layer, body.nu_bulk, body.thickness)
-    surface = SelfAffineSpectrum(plain.get("height", 22.4e-6), body.hurst, body.low, body.rolloff, body.high)
-    angles = math.radians(first), math.radians(second)
-    state = capillary_state_in_humid_air(humidity, kelvin, load, surface, skin, *angles, correction, closure)
+    skin = LayeredSkin(
+        young_modulus_layer=body.layer,
+        young_modulus_bulk=body.bulk,
+        poisson_ratio_layer=body.nu_layer,
+        poisson_ratio_bulk=body.nu_bulk,
+        layer_thickness=body.thickness,
+    )
+    surface = SelfAffineSpectrum(
+        rms_height=plain.get("height", 22.4e-6),
+        hurst_exponent=body.hurst,
+        wavevector_min=body.low,
+        wavevector_rolloff=body.rolloff,
+        wavevector_max=body.high,
+    )
+    state = capillary_state_in_humid_air(
+        humidity,
+        kelvin,
+        nominal_pressure=load,
+        spectrum=surface,
+        skin=skin,
+        contact_angle_skin=math.radians(first),
+        contact_angle_counterface=math.radians(second),
+        area_correction=correction,
+        closure=closure,
+    )
     assert pull == pytest.approx(state.capillary_pressure, rel=1e-9)
     assert pull > 0.01 * load
     # Kelvin's equation for a mole of water, and Eqs. 5 to 7 with the public gap distribution
@@ -127,8 +148,11 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
     assert surface_tension_of_water(kelvin) / radius * volume == pytest.approx(
         8.314462618 * kelvin * math.log(1 / humidity), rel=0.01
     )
-    gaps = gap_distribution(load + pull, surface, skin, correction, closure)
-    wet = gaps.cumulative(radius * sum(map(math.cos, angles))) - gaps.contact_fraction
+    gaps = gap_distribution(load + pull, surface, skin=skin, area_correction=correction, closure=closure)
+    wet = (
+        gaps.cumulative(radius * sum(map(math.cos, map(math.radians, (first, second)))))
+        - gaps.contact_fraction
+    )
     assert pull == pytest.approx(surface_tension_of_water(kelvin) / radius * wet, rel=1e-8)
     area = sum(body.area(load + pull, correction=correction, yield_stress=limit))
     assert found["relative_contact_area"][0] == pytest.approx(area, rel=2e-4)
@@ -137,7 +161,7 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
 
 def test_a_table_of_moduli_of_the_users_own(predict, tmp_path):
     humidity = np.array([0.2, 0.45, 0.6, 0.75, 0.9, 1.0])
-    moduli = young_modulus_from_table(humidity, [0.1, 0.5, 0.8, 1.0], [2e9, 8e8, 3e7, 8e6])
+    moduli = young_modulus_from_table(humidity, [0.1, 0.5, 0.8, 1.0], table_modulus=[2e9, 8e8, 3e7, 8e6])
     rows = table(
         tmp_path,
         "relative_humidity [%],young_modulus_layer [MPa]",
@@ -150,7 +174,9 @@ def test_a_table_of_moduli_of_the_users_own(predict, tmp_path):
         for name, values in predict("humid-air", *words)[1].items():
             assert values[0] == pytest.approx(found[name][i], rel=1e-12), (name, i)
     # the table of the user and the curve of the model file are not the same
-    others = moduli / young_modulus_at_humidity(humidity, 1e9, 7e6, 0.89, 1.5)
+    others = moduli / young_modulus_at_humidity(
+        humidity, 1e9, young_modulus_wet=7e6, transition_humidity=0.89, sharpness=1.5
+    )
     assert np.all(np.abs(np.log(others)) > 0.05)
 
 
@@ -161,7 +187,9 @@ def test_bridges_matter_little_below_90_percent_as_in_appendix_a(predict, model)
     # 13 % of the load at 90 %, where the appendix shows with 70 MPa that they are negligible, and less below
     assert np.all(found["capillary_pressure"][below] < 0.15 * LOAD)
     assert np.all(found["friction_coefficient"][below] < 0.35)
-    modulus = young_modulus_at_humidity(0.9, 1e9, 7e6, 0.89, 1.5)
+    modulus = young_modulus_at_humidity(
+        0.9, 1e9, young_modulus_wet=7e6, transition_humidity=0.89, sharpness=1.5
+    )
     assert modulus == pytest.approx(70e6, rel=0.05)
     shipped = predict(model, "relative_humidity=90 %")[1]
     fixed = predict(model, "relative_humidity=90 %", f"young_modulus_layer={float(modulus)!r} Pa")[1]
@@ -185,7 +213,9 @@ def test_no_bridges_on_polypropylene(predict):
     assert np.all(found["capillary_pressure"] == 0.0)
     # only the layer softens: friction rises with humidity up to that of flooded skin
     assert np.all(np.diff(found["friction_coefficient"]) > -1e-12)
-    moduli = young_modulus_at_humidity(humidity, 1e9, 7e6, 0.89, 1.5)
+    moduli = young_modulus_at_humidity(
+        humidity, 1e9, young_modulus_wet=7e6, transition_humidity=0.89, sharpness=1.5
+    )
     for i in (0, 13, 18, 19):
         area = sum(PlainContact(layer=moduli[i]).area(LOAD, yield_stress=50e6))
         assert found["relative_contact_area"][i] == pytest.approx(area, rel=1e-4)

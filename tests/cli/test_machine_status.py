@@ -13,35 +13,20 @@ from pathlib import Path
 
 import pytest
 from command_line import command, environment, run, run_process
+from small_models import FINGER, write_model
 
 from skinbayes.fit import load_fit
 
-MODEL = """
-title = "{title}"
-forward = "friction"
-[data]
-dataset = "fehlberg2025-finger-stribeck"
-observable = "friction_coefficient"
-rows = {{ liquid = ["water"] }}
-[surface]
-name = "paper_reference"
-[parameters]
-young_modulus_bulk = "20 kPa"
-layer_thickness = "173 um"
-frictional_shear_stress = {{ lognormal = ["{stress} MPa", 1.0] }}
-young_modulus_layer = "7 MPa"
-[noise]
-family = "lognormal"
-noise_scale = {{ half_normal = 0.5 }}
-"""
 LONG = ("--seed", "5", "--ess", "20000", "--json")
 
 
 def model(folder: Path, name: str = "mine", stress: int = 10) -> Path:
     folder.mkdir(exist_ok=True)
-    path = folder / f"{name}.toml"
-    path.write_text(MODEL.format(title=name, stress=stress), encoding="utf-8")
-    return path
+    parameters = (
+        f'frictional_shear_stress = {{ lognormal = ["{stress} MPa", 1.0] }}\nyoung_modulus_layer = "7 MPa"'
+    )
+    noise = 'family = "lognormal"\nnoise_scale = { half_normal = 0.5 }'
+    return write_model(folder, FINGER.format(parameters=parameters, noise=noise), f"{name}.toml")
 
 
 def start(*arguments: str | Path) -> subprocess.Popen[str]:

@@ -62,8 +62,14 @@ def test_other_parameters_against_the_physics(capsys):
     found = run(
         capsys, "predict", "stribeck", *arguments, "--set", "speed_viscosity_product=2 mN/m", "--json"
     ).document()["prediction"]
-    skin = LayeredSkin(3e6, 60e3, 0.5, 0.5, 50e-6)
-    surface = SelfAffineSpectrum(12e-6, 0.78, 1e3, 6.345e3, 1e9)
+    skin = LayeredSkin(young_modulus_layer=3e6, young_modulus_bulk=60e3, layer_thickness=50e-6)
+    surface = SelfAffineSpectrum(
+        rms_height=12e-6,
+        hurst_exponent=0.78,
+        wavevector_min=1e3,
+        wavevector_rolloff=6.345e3,
+        wavevector_max=1e9,
+    )
     direct = stribeck_curve(
         3 * 2e-3,
         sphere_radius=12e-3,

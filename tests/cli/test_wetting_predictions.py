@@ -90,11 +90,32 @@ def test_other_skin_against_scalars_and_independent_code(predict, case, closure)
     model = "capillary-film" if closure == "gaussian" else "capillary-film:sharp"
     found = {name: values[0] for name, values in predict(model, *words)[1].items()}
     body = PlainContact(**plain)
-    skin = LayeredSkin(body.layer, body.bulk, body.nu_layer, body.nu_bulk, body.thickness)
+    skin = LayeredSkin(
+        young_modulus_layer=body.layer,
+        young_modulus_bulk=body.bulk,
+        poisson_ratio_layer=body.nu_layer,
+        poisson_ratio_bulk=body.nu_bulk,
+        layer_thickness=body.thickness,
+    )
     height = plain.get("height", 22.4e-6)
-    surface = SelfAffineSpectrum(height, body.hurst, body.low, body.rolloff, body.high)
-    angles = math.radians(first), math.radians(second)
-    state = capillary_state(film, load, surface, skin, 0.072, *angles, correction, closure)
+    surface = SelfAffineSpectrum(
+        rms_height=height,
+        hurst_exponent=body.hurst,
+        wavevector_min=body.low,
+        wavevector_rolloff=body.rolloff,
+        wavevector_max=body.high,
+    )
+    state = capillary_state(
+        film,
+        load,
+        spectrum=surface,
+        skin=skin,
+        surface_tension=0.072,
+        contact_angle_skin=math.radians(first),
+        contact_angle_counterface=math.radians(second),
+        area_correction=correction,
+        closure=closure,
+    )
     for name, value in found.items():
         assert value == pytest.approx(getattr(state, name), rel=1e-9), name
     assert found["capillary_pressure"] > 0.1 * load
@@ -104,11 +125,16 @@ def test_other_skin_against_scalars_and_independent_code(predict, case, closure)
     elastic, _ = body.area(pressure, correction=correction)
     assert found["relative_contact_area"] == pytest.approx(elastic, rel=2e-4)
     assert found["mean_separation"] == pytest.approx(
-        mean_separation(pressure, surface, skin, correction), rel=1e-3
+        mean_separation(pressure, surface, skin=skin, area_correction=correction), rel=1e-3
     )
     # Eqs. 5 to 7: the pull belongs to a Kelvin length up to which the gaps hold the water
-    kelvin = 0.072 * sum(map(math.cos, angles)) * found["wet_area"] / found["capillary_pressure"]
-    gaps = gap_distribution(pressure, surface, skin, correction, closure)
+    kelvin = (
+        0.072
+        * sum(map(math.cos, map(math.radians, (first, second))))
+        * found["wet_area"]
+        / found["capillary_pressure"]
+    )
+    gaps = gap_distribution(pressure, surface, skin=skin, area_correction=correction, closure=closure)
     water = gaps.cumulative(kelvin) - found["relative_contact_area"]
     assert water == pytest.approx(found["wet_area"], rel=1e-3)
 
@@ -201,16 +227,32 @@ def test_other_drying_against_scalars_and_independent_code(predict, case):
     layer, load, shear = (
         given[k] for k in ("young_modulus_layer", "nominal_pressure", "frictional_shear_stress")
     )
-    skin, surface = LayeredSkin(layer, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+    skin, surface = (
+        LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=20e3, layer_thickness=20e-6),
+        named_surface("paper_reference"),
+    )
     contact = film_contact(
-        load, surface, skin, 0.072, math.radians(80), given["contact_angle_counterface"],
-        given["young_modulus_layer_dry"], given["yield_stress"], hardening_film=given["hardening_film"],
-    )  # fmt: skip
+        load,
+        surface,
+        skin=skin,
+        surface_tension=0.072,
+        contact_angle_skin=math.radians(80),
+        contact_angle_counterface=given["contact_angle_counterface"],
+        young_modulus_layer_dry=given["young_modulus_layer_dry"],
+        yield_stress=given["yield_stress"],
+        hardening_film=given["hardening_film"],
+    )
     for i in range(0, len(time), 7):
         one = drying_curve(
-            time[i], given["wetting_time"], given["initial_film"], given["evaporation_rate"], contact, shear, load,
-            given["film_spread"],
-        )  # fmt: skip
+            time[i],
+            given["wetting_time"],
+            initial_film=given["initial_film"],
+            evaporation_rate=given["evaporation_rate"],
+            contact=contact,
+            frictional_shear_stress=shear,
+            nominal_pressure=load,
+            film_spread=given["film_spread"],
+        )
         for name, values in found.items():
             assert values[i] == pytest.approx(getattr(one, name), rel=1e-10, abs=1e-18), (name, time[i])
     # dry before and after, flooded in between, by other code

@@ -28,7 +28,7 @@ yield_stress = {{ lognormal = ["50 MPa", 0.5] }}
 {stress}
 {groups}
 [noise]
-family = "lognormal"
+family = "{family}"
 noise_scale = {{ half_normal = 0.3 }}
 """
 
@@ -44,7 +44,8 @@ class Crossed:
     groups : columns with effects to the prior of their scale
     stress : prior of the shear stress
     loads : of each person at each site, in mN
-    noise : scatter of ln of friction
+    noise : scatter of ln of friction, or of friction
+    family : of the noise; effects are added to friction if it is gaussian, else to its ln
     """
 
     people: int
@@ -54,6 +55,7 @@ class Crossed:
     stress: str = WEAK
     loads: tuple[int, ...] = (200, 500, 1000, 2000)
     noise: float = 0.08
+    family: str = "lognormal"
 
     def problem(self, folder: Path, seed: int) -> Problem:
         """The design with data made from ``seed``."""
@@ -63,7 +65,10 @@ class Crossed:
         for i in range(self.people):
             for j in range(self.sites):
                 for load in self.loads:
-                    friction = 0.6 * np.exp(person[i] + site[j] + self.noise * rng.normal())
+                    scatter = self.noise * rng.normal()
+                    friction = 0.6 * np.exp(person[i] + site[j] + scatter)
+                    if self.family == "gaussian":
+                        friction = 0.6 * np.exp(site[j]) + 0.5 * person[i] + scatter
                     lines.append(f"P{i},{SITES[j]},{load},8,{friction:.4f}")
         levels = {"person": [f"P{i}" for i in range(self.people)], "body_site": SITES[: self.sites]}
         if self.by is None:
@@ -74,7 +79,9 @@ class Crossed:
         groups = "".join(f"[groups.{c}]\nscale = {{ {prior} }}\n" for c, prior in self.groups.items())
         (folder / "crossed.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
         path = folder / "crossed.toml"
-        path.write_text(MODEL.format(name="crossed", stress=stress, groups=groups), encoding="utf-8")
+        path.write_text(
+            MODEL.format(name="crossed", stress=stress, groups=groups, family=self.family), encoding="utf-8"
+        )
         return load_problem(path)
 
 
@@ -96,7 +103,8 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
 
     ln of friction is ln of shear stress + ln g(other parameters) + effects + scatter. The other parameters are drawn: the
     scales and the skin from their priors, the scatter about the residuals of a regression on all levels. Given them, logarithms
-    of shear stresses are those of a linear regression with known covariance: normal, but for their prior. Nothing is shared
+    of shear stresses are those of a linear regression with known covariance: normal, but for their prior. Under gaussian noise
+    friction is shear stress times g plus effects and scatter, and the same holds for shear stresses themselves. Nothing is shared
     with the coordinates, the starts and the moves of the sampler, nor the algebra of the groups; only predictions and priors are.
     """
     names = problem.names
@@ -104,7 +112,8 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
     noise = names.index("noise_scale")
     theta = problem.draw_prior(rng, count)
     labels = problem.conditions.labels
-    y = np.log(problem.observed)
+    additive = not problem.noise_is_logarithmic.all()
+    y = problem.observed if additive else np.log(problem.observed)
     told = {p.by for p in problem.free if p.by} | set(problem.groups.columns)
     columns = [labels[c][:, None] == np.unique(labels[c]) for c in sorted(told & set(labels))]
     dummies = np.concatenate(columns, axis=1).astype(float)
@@ -119,7 +128,8 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
 
     known = theta.copy()
     known[:, stress] = 10e6
-    data = y - np.log(problem.predict(known)["friction_coefficient"]) + np.log(10e6)
+    predicted = problem.predict(known)["friction_coefficient"]
+    data = np.tile(y, (count, 1)) if additive else y - np.log(predicted) + np.log(10e6)
     levels = [name.partition("[")[2].rstrip("]") for name in (names[i] for i in stress)]
     column = next((labels[c] for c in labels if set(levels) <= set(labels[c].tolist())), None)
     design = (
@@ -129,17 +139,19 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
     )
     drawn = np.empty((count, len(stress)))
     flat = prior[names[stress[0]]].family == "uniform"
-    tilt = np.full(len(stress), 1.0 if flat else 0.0)
+    tilt = np.full(len(stress), 1.0 if flat and not additive else 0.0)
     for some in np.array_split(np.arange(count), max(1, count // 2000)):
         covariance = theta[some, noise, None, None] ** 2 * np.eye(y.size)
         for name in (n for n in names if n.startswith("group_scale")):
             member = labels[name.partition("[")[2].rstrip("]")]
             covariance += theta[some, names.index(name), None, None] ** 2 * (member[:, None] == member)
         precision = np.linalg.inv(covariance)
-        normal = design.T @ precision @ design
-        projected = np.einsum("nk,bnm,bm->bk", design, precision, data[some])
+        acting = predicted[some, :, None] * design if additive else np.tile(design, (len(some), 1, 1))
+        carried = np.swapaxes(acting, 1, 2) @ precision
+        normal = carried @ acting
+        projected = np.einsum("bkm,bm->bk", carried, data[some])
         best = np.linalg.solve(normal, projected[..., None])[..., 0]
-        left = data[some] - best @ design.T
+        left = data[some] - np.einsum("bnk,bk->bn", acting, best)
         weight[some] -= 0.5 * np.einsum("bn,bnm,bm->b", left, precision, left)
         weight[some] -= 0.5 * (np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(normal)[1])
         spread = np.linalg.inv(normal)
@@ -148,8 +160,9 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
         weight[some] += best @ tilt + 0.5 * moved @ tilt
         root = np.linalg.cholesky(spread)
         drawn[some] = best + moved + np.einsum("bkl,bl->bk", root, rng.standard_normal(best.shape))
-    theta[:, stress] = np.exp(drawn)
+    theta[:, stress] = 10e6 * drawn if additive else np.exp(drawn)
     for i in stress:
-        weight += prior[names[i]].log_density(theta[:, i]) + (1.0 - tilt[0]) * np.log(theta[:, i])
+        jacobian = 0.0 if additive else (1.0 - tilt[0]) * np.log(theta[:, i])
+        weight += prior[names[i]].log_density(theta[:, i]) + jacobian
     shares = np.exp(weight - weight.max())
     return Weighted(theta, shares / shares.sum())

@@ -179,18 +179,36 @@ def test_a_table_knows_its_box() -> None:
 
     moduli = np.array([5e6, 9e6, 12e6])
     surface, skin = (
-        SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 6.345e3, 1e9),
-        LayeredSkin(moduli, 20e3, 0.5, 0.5, 20e-6),
+        SelfAffineSpectrum(
+            rms_height=22.4e-6,
+            hurst_exponent=0.78,
+            wavevector_min=1e3,
+            wavevector_rolloff=6.345e3,
+            wavevector_max=1e9,
+        ),
+        LayeredSkin(young_modulus_layer=moduli, young_modulus_bulk=20e3, layer_thickness=20e-6),
     )
     load, height, pull = np.full(3, 6830.0), np.full(3, 22.4e-6), np.full(3, 0.0845)
-    groups = skin_groups(load, pull, height, surface, skin, np.array(0.42))
+    groups = skin_groups(
+        load, pull, height=height, spectrum=surface, skin=skin, area_correction=np.array(0.42)
+    )
     low, high = ({n: float(end(x[:2])) for n, x in groups.items()} for end in (np.min, np.max))
-    table = bridge_table(low, high, 6830.0 / 20e3 / 1e-7)
+    table = bridge_table(low, high, depth=6830.0 / 20e3 / 1e-7)
     assert table is not None
     assert table.covers(groups).tolist() == [True, True, False]
 
     def contact(table):
-        return film_contact(6830.0, surface, skin, 0.0845, np.pi / 2, 0.0, 1e9, 50e6, table=table)
+        return film_contact(
+            6830.0,
+            surface,
+            skin=skin,
+            surface_tension=0.0845,
+            contact_angle_skin=np.pi / 2,
+            contact_angle_counterface=0.0,
+            young_modulus_layer_dry=1e9,
+            yield_stress=50e6,
+            table=table,
+        )
 
     films = np.broadcast_to(np.linspace(0.3e-6, 12e-6, 40), (3, 40))
     with_table, without = (contact(t).average(films, np.array(1e-7))[0] for t in (table, None))

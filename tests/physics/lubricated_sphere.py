@@ -311,7 +311,7 @@ def lubricated_sphere(
 ) -> SphereFilms:
     """Films under a ball at several ηv; shear stress and pressure flow are counted up to the edge of the ball, r = R."""
     product = np.asarray(speed_viscosity_product, dtype=np.float64)
-    hertz = sphere_contact(normal_force, sphere_radius, reduced_modulus)
+    hertz = sphere_contact(normal_force, sphere_radius, reduced_modulus=reduced_modulus)
     a, peak = float(hertz.contact_radius), float(hertz.maximum_pressure)
     height, slope = a * a / sphere_radius, a / sphere_radius
     number = 6 * product * sphere_radius**2 / (a**3 * peak)

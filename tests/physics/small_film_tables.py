@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
+from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin
 from skinbayes.lubrication import FILM_PARAMETERS, FilmTable, build_film_table
@@ -37,20 +38,20 @@ def draw(rng: np.random.Generator, vectors: int, rows: int = 0) -> dict[str, np.
 
 def skin_of(parameters: dict[str, float]) -> LayeredSkin:
     return LayeredSkin(
-        parameters["young_modulus_layer"],
-        parameters["young_modulus_bulk"],
-        0.5,
-        0.5,
-        parameters["layer_thickness"],
+        young_modulus_layer=parameters["young_modulus_layer"],
+        young_modulus_bulk=parameters["young_modulus_bulk"],
+        layer_thickness=parameters["layer_thickness"],
     )
 
 
 def spectrum_of(parameters: dict[str, float]) -> SelfAffineSpectrum:
     shape = named_surface("paper_reference")
-    return SelfAffineSpectrum(
-        parameters["rms_height"],
-        shape.hurst_exponent,
-        shape.wavevector_min,
-        shape.wavevector_rolloff,
-        shape.wavevector_max,
+    return surface_from(
+        (
+            parameters["rms_height"],
+            shape.hurst_exponent,
+            shape.wavevector_min,
+            shape.wavevector_rolloff,
+            shape.wavevector_max,
+        )
     )

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from named_fields import skin_from, surface_from
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -12,7 +13,7 @@ from skinbayes.contact import (
     gap_distribution,
     mean_separation,
     relative_contact_area,
-    stress_variance,
+    twice_stress_variance,
 )
 from skinbayes.errors import InputError
 from skinbayes.roughness import SelfAffineSpectrum, named_surface
@@ -21,14 +22,20 @@ from skinbayes.wetting._curve import solve_curve
 from skinbayes.wetting._gaps import GapSource
 
 SURFACE = named_surface("paper_reference")
-WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 LOAD, TENSION, SKIN_ANGLE = 6830.0, 0.0727, np.radians(80.0)
+PAPER = {"spectrum": SURFACE, "skin": WET, "surface_tension": TENSION, "contact_angle_skin": SKIN_ANGLE,
+         "contact_angle_counterface": 0.0}  # fmt: skip
 FIELDS = ("film_thickness", "kelvin_gap", "capillary_pressure", "total_pressure", "relative_contact_area",
           "wet_area", "mean_separation", "mean_separation_wet", "flooded", "solutions")  # fmt: skip
 
 
-def paper(film, glass=0.0, **options):
-    return capillary_state(film, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, np.radians(glass), **options)
+def paper(film, glass=0.0, load=LOAD, **options):
+    return capillary_state(film, load, **PAPER | {"contact_angle_counterface": np.radians(glass)} | options)
+
+
+def paper_at_gap(gap, load=LOAD, **options):
+    return capillary_state_at_gap(gap, load, **PAPER | options)
 
 
 @pytest.mark.parametrize(
@@ -43,7 +50,7 @@ def paper(film, glass=0.0, **options):
 def test_strongest_pull_of_the_paper(closure, glass, pull, film, separation):
     # prototypes computed apart from this code, water at 25 °C; the maximum of the sharp closure is broad
     films = np.linspace(2e-6, 13e-6, 89)
-    state = capillary_state(films, LOAD, SURFACE, WET, 0.0720, SKIN_ANGLE, np.radians(glass), closure=closure)
+    state = paper(films, surface_tension=0.0720, contact_angle_counterface=np.radians(glass), closure=closure)
     best = np.argmax(state.capillary_pressure)
     assert state.capillary_pressure[best] / LOAD == pytest.approx(pull, rel=0.005)
     assert films[best] == pytest.approx(film, abs=0.4e-6 if closure == "sharp" else 0.1e-6)
@@ -51,14 +58,14 @@ def test_strongest_pull_of_the_paper(closure, glass, pull, film, separation):
 
 
 def test_flooded_from_the_mean_separation_on():
-    separation = mean_separation(LOAD, SURFACE, WET)
+    separation = mean_separation(LOAD, SURFACE, skin=WET)
     assert separation == pytest.approx(13.5e-6, rel=0.005)
     state = paper(separation * np.array([0.9999, 1.0, 5.0]))
     np.testing.assert_array_equal(state.flooded, [0, 1, 1])
     np.testing.assert_array_equal(state.capillary_pressure[1:], 0.0)
     np.testing.assert_array_equal(state.kelvin_gap[1:], np.inf)
     np.testing.assert_allclose(state.film_thickness[1:], separation, rtol=1e-12)
-    dry = relative_contact_area(LOAD, stress_variance(SURFACE, WET))
+    dry = relative_contact_area(LOAD, twice_stress_variance(SURFACE, WET))
     np.testing.assert_allclose(state.relative_contact_area, dry, rtol=5e-4)  # continuous: nothing jumps
     np.testing.assert_allclose(state.wet_area[1:] + dry, 1.0, rtol=1e-12)
     close = paper(separation * (1 - np.array([1e-3, 1e-4, 1e-5])))
@@ -93,20 +100,20 @@ def brute_force(film, load, surface, skin, pull, closure):
 
     def imbalance(log_pressure):
         pressure = np.exp(log_pressure)
-        gaps = gap_distribution(pressure, surface, skin, closure=closure)
+        gaps = gap_distribution(pressure, surface, skin=skin, closure=closure)
         gap = gap_for(gaps)
         return pressure - load - pull / gap * integrate(gaps, gap, 0)
 
     pressure = np.exp(brentq(imbalance, np.log(load * (1 + 1e-6)), np.log(load * 4), xtol=1e-10))
-    return pressure, gap_for(gap_distribution(pressure, surface, skin, closure=closure))
+    return pressure, gap_for(gap_distribution(pressure, surface, skin=skin, closure=closure))
 
 
 @pytest.mark.parametrize(
     ("film", "load", "skin", "angles", "closure"),
     [
         (3e-6, 6830.0, WET, (80.0, 20.0), "gaussian"),
-        (0.4e-6, 2500.0, LayeredSkin(3e6, 60e3, 0.4, 0.5, 35e-6), (60.0, 75.0), "gaussian"),
-        (1.5e-6, 20e3, LayeredSkin(60e6, 40e3, 0.5, 0.45, 15e-6), (95.0, 10.0), "gaussian"),
+        (0.4e-6, 2500.0, skin_from((3e6, 60e3, 0.4, 0.5, 35e-6)), (60.0, 75.0), "gaussian"),
+        (1.5e-6, 20e3, skin_from((60e6, 40e3, 0.5, 0.45, 15e-6)), (95.0, 10.0), "gaussian"),
         (4e-6, 9000.0, WET, (70.0, 40.0), "sharp"),
     ],
 )
@@ -114,11 +121,12 @@ def test_brute_force(film, load, skin, angles, closure):
     first, second = np.radians(angles)
     pull = TENSION * (np.cos(first) + np.cos(second))
     pressure, gap = brute_force(film, load, SURFACE, skin, pull, closure)
-    state = capillary_state(film, load, SURFACE, skin, TENSION, first, second, closure=closure)
+    given = {"load": load, "skin": skin, "contact_angle_skin": first, "closure": closure}
+    state = paper(film, contact_angle_counterface=second, **given)
     sharp = closure == "sharp"  # which costs the quadrature some digits
     assert state.total_pressure == pytest.approx(pressure, rel=1e-6 if sharp else 1e-7)
     assert state.kelvin_gap == pytest.approx(gap, rel=1e-5 if sharp else 1e-6)
-    again = capillary_state_at_gap(gap, load, SURFACE, skin, TENSION, first, second, closure=closure)
+    again = paper_at_gap(gap, contact_angle_counterface=second, **given)
     assert again.film_thickness == pytest.approx(film, rel=1e-5 if sharp else 1e-6)
 
 
@@ -128,7 +136,7 @@ def test_residuals_with_the_public_gap_distribution(closure):
     state = paper(films, 20.0, closure=closure)
     pull = TENSION * (np.cos(SKIN_ANGLE) + np.cos(np.radians(20.0)))
     for i, film in enumerate(films):
-        gaps = gap_distribution(state.total_pressure[i], SURFACE, WET, closure=closure)
+        gaps = gap_distribution(state.total_pressure[i], SURFACE, skin=WET, closure=closure)
         wet = gaps.cumulative(state.kelvin_gap[i]) - gaps.contact_fraction
         total = LOAD + pull / state.kelvin_gap[i] * wet
         assert state.total_pressure[i] == pytest.approx(total, rel=1e-10)
@@ -151,7 +159,7 @@ def test_interpolated_solution_is_close():
 
 def test_film_and_pull_along_the_gap():
     gaps = np.geomspace(2e-6, 2e-4, 60)
-    state = capillary_state_at_gap(gaps, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0)
+    state = paper_at_gap(gaps)
     assert np.all(np.diff(state.film_thickness) > 0)
     assert np.all(np.diff(state.wet_area) > 0)
     assert np.all(state.wet_area + state.relative_contact_area < 1 + 1e-12)
@@ -161,33 +169,31 @@ def test_film_and_pull_along_the_gap():
 
 
 def test_more_pull_more_contact():
-    state = capillary_state(
-        5e-6, LOAD, SURFACE, WET, np.array([0.0, 0.02, 0.05, 0.0727, 0.2]), SKIN_ANGLE, 0.0
-    )
+    state = paper(5e-6, surface_tension=np.array([0.0, 0.02, 0.05, 0.0727, 0.2]))
     assert np.all(np.diff(state.relative_contact_area) > 0)
     assert np.all(np.diff(state.mean_separation) < 0)
     assert state.capillary_pressure[0] == 0
-    dry = relative_contact_area(LOAD, stress_variance(SURFACE, WET))
+    dry = relative_contact_area(LOAD, twice_stress_variance(SURFACE, WET))
     assert state.relative_contact_area[0] == pytest.approx(dry, rel=1e-12)
-    weak = capillary_state(5e-6, LOAD, SURFACE, WET, np.array([1e-5, 2e-5]), SKIN_ANGLE, 0.0)
+    weak = paper(5e-6, surface_tension=np.array([1e-5, 2e-5]))
     assert weak.capillary_pressure[1] / weak.capillary_pressure[0] == pytest.approx(2.0, rel=1e-3)
 
 
 def test_polypropylene_has_no_bridges_and_water_fills_narrow_gaps():
     glass = np.radians(102.0)
     film = np.array([1e-6, 6e-6, 20e-6])
-    state = capillary_state(film, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, glass)
+    state = paper(film, contact_angle_counterface=glass)
     np.testing.assert_allclose(state.capillary_pressure, 0.0, atol=1e-9 * LOAD)
-    gaps = gap_distribution(LOAD, SURFACE, WET)
+    gaps = gap_distribution(LOAD, SURFACE, skin=WET)
     np.testing.assert_allclose(gaps.film(state.kelvin_gap[:2]), film[:2], rtol=1e-10)
     np.testing.assert_allclose(
         state.wet_area[:2], gaps.cumulative(state.kelvin_gap[:2]) - gaps.contact_fraction, rtol=1e-10
     )
     assert state.flooded[2] == 1
-    assert kelvin_gap(1e-9, SKIN_ANGLE, glass) == 0
+    assert kelvin_gap(1e-9, SKIN_ANGLE, contact_angle_counterface=glass) == 0
     # and the wetting side joins it
     edge = np.pi - SKIN_ANGLE
-    near = capillary_state(film[1], LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, edge + np.array([-1e-6, 0.0]))
+    near = paper(film[1], contact_angle_counterface=edge + np.array([-1e-6, 0.0]))
     assert near.relative_contact_area[0] == pytest.approx(near.relative_contact_area[1], rel=1e-6)
 
 
@@ -197,16 +203,15 @@ def test_surface_energy_is_the_work_of_the_laplace_pressure():
     state = paper(films)
     step = 1e-3 * films
     for i in range(films.size):
-        held = capillary_state(
-            films[i] + step[i] * np.array([-1.0, 1.0]),
-            state.total_pressure[i], SURFACE, WET, 0.0, SKIN_ANGLE, 0.0,
-        )  # fmt: skip
+        held = paper(
+            films[i] + step[i] * np.array([-1.0, 1.0]), load=state.total_pressure[i], surface_tension=0.0
+        )
         assert np.diff(held.wet_area)[0] / (2 * step[i]) == pytest.approx(1 / state.kelvin_gap[i], rel=1e-5)
 
 
 def test_bridges_act_like_a_load_of_the_same_size():
     state = paper(4e-6)
-    pressed = capillary_state(4e-6, state.total_pressure, SURFACE, WET, 0.0, SKIN_ANGLE, 0.0)
+    pressed = paper(4e-6, load=state.total_pressure, surface_tension=0.0)
     for name in ("relative_contact_area", "mean_separation", "wet_area", "kelvin_gap"):
         assert getattr(pressed, name) == pytest.approx(getattr(state, name), rel=1e-9)
 
@@ -214,23 +219,17 @@ def test_bridges_act_like_a_load_of_the_same_size():
 def test_hysteresis_is_seen_and_both_branches_can_be_had():
     # sharp gaps at nanometres: the surfaces snap together
     radius = 0.44735e-9
-    gap = kelvin_gap(radius, SKIN_ANGLE, 0.0)
-    sides = [
-        capillary_state_at_gap(gap, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, closure="sharp", branch=b)
-        for b in ("approach", "retreat")
-    ]
+    gap = kelvin_gap(radius, SKIN_ANGLE, contact_angle_counterface=0.0)
+    sides = [paper_at_gap(gap, closure="sharp", branch=b) for b in ("approach", "retreat")]
     assert sides[0].solutions == sides[1].solutions == 3
     assert sides[1].total_pressure > 1.05 * sides[0].total_pressure
     for side in sides:
-        gaps = gap_distribution(side.total_pressure, SURFACE, WET, closure="sharp")
+        gaps = gap_distribution(side.total_pressure, SURFACE, skin=WET, closure="sharp")
         wet = gaps.cumulative(gap) - gaps.contact_fraction
         total = LOAD + TENSION / radius * wet
         assert side.total_pressure == pytest.approx(total, rel=1e-10)
     # with the smooth closure there is one solution, whichever side one comes from
-    both = [
-        capillary_state_at_gap(gap, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, branch=b)
-        for b in ("approach", "retreat")
-    ]
+    both = [paper_at_gap(gap, branch=b) for b in ("approach", "retreat")]
     assert both[0].solutions == 1
     assert both[0].total_pressure == pytest.approx(both[1].total_pressure, rel=1e-11)
 
@@ -241,9 +240,13 @@ def random_vectors(count, seed):
     def scale(middle, width):
         return middle * np.exp(rng.normal(0.0, width, count))
 
-    surface = SelfAffineSpectrum(scale(22e-6, 0.3), rng.uniform(0.65, 0.95, count), scale(1e3, 0.2),
-                                 scale(6.3e3, 0.2), scale(1e9, 0.3))  # fmt: skip
-    skin = LayeredSkin(scale(7e6, 0.5), scale(20e3, 0.4), 0.5, 0.5, scale(20e-6, 0.3))
+    surface = surface_from((scale(22e-6, 0.3), rng.uniform(0.65, 0.95, count), scale(1e3, 0.2), scale(6.3e3, 0.2),
+                            scale(1e9, 0.3)))  # fmt: skip
+    skin = LayeredSkin(
+        young_modulus_layer=scale(7e6, 0.5),
+        young_modulus_bulk=scale(20e3, 0.4),
+        layer_thickness=scale(20e-6, 0.3),
+    )
     return surface, skin, scale(6830.0, 0.3), scale(0.07, 0.05), rng.uniform(0.0, 0.6, count)
 
 
@@ -251,24 +254,46 @@ def random_vectors(count, seed):
 def test_batches_agree_with_rows_to_the_last_bit(refine):
     surface, skin, load, tension, glass = random_vectors(5, 3)
     films = np.geomspace(0.2e-6, 30e-6, 6)
-    batch = capillary_state(films, load, surface, skin, tension, SKIN_ANGLE, glass, refine=refine)
+    batch = paper(
+        films,
+        load=load,
+        spectrum=surface,
+        skin=skin,
+        surface_tension=tension,
+        contact_angle_counterface=glass,
+        refine=refine,
+    )
     for i in range(load.size):
-        one = capillary_state(
+        one = paper(
             films,
-            load[i],
-            SelfAffineSpectrum(*(getattr(surface, n)[i] for n in surface.__dataclass_fields__)),
-            LayeredSkin(skin.young_modulus_layer[i], skin.young_modulus_bulk[i], 0.5, 0.5, skin.layer_thickness[i]),
-            tension[i], SKIN_ANGLE, glass[i], refine=refine,
-        )  # fmt: skip
+            load=load[i],
+            spectrum=surface_from(getattr(surface, n)[i] for n in surface.__dataclass_fields__),
+            skin=LayeredSkin(
+                young_modulus_layer=skin.young_modulus_layer[i],
+                young_modulus_bulk=skin.young_modulus_bulk[i],
+                layer_thickness=skin.layer_thickness[i],
+            ),
+            surface_tension=tension[i],
+            contact_angle_counterface=glass[i],
+            refine=refine,
+        )
         for name in FIELDS:
             np.testing.assert_array_equal(getattr(batch, name)[i], getattr(one, name), err_msg=name)
 
 
 def test_interpolation_holds_over_many_skins():
     surface, skin, load, tension, glass = random_vectors(24, 5)
-    films = mean_separation(load[:, None], surface, skin) * np.array([0.01, 0.1, 0.3, 0.5, 0.8, 0.97])
+    films = mean_separation(load[:, None], surface, skin=skin) * np.array([0.01, 0.1, 0.3, 0.5, 0.8, 0.97])
     exact, quick = (
-        capillary_state(films, load, surface, skin, tension, SKIN_ANGLE, glass, refine=refine)
+        paper(
+            films,
+            load=load,
+            spectrum=surface,
+            skin=skin,
+            surface_tension=tension,
+            contact_angle_counterface=glass,
+            refine=refine,
+        )
         for refine in (True, False)
     )
     np.testing.assert_allclose(quick.relative_contact_area, exact.relative_contact_area, rtol=1e-3)
@@ -282,15 +307,22 @@ def test_no_kinks_along_random_lines(seed):
 
     def gradient(half_width):
         place = np.linspace(-half_width, half_width, 41)
-        surface = SelfAffineSpectrum(22.4e-6 * np.exp(direction[0] * place), 0.78 + 0.05 * direction[1] * place, 1e3,
-                                     6345.0, 1e9)  # fmt: skip
-        skin = LayeredSkin(
-            7e6 * np.exp(direction[2] * place), 20e3 * np.exp(direction[3] * place), 0.5, 0.5, 20e-6
+        surface = surface_from(
+            (22.4e-6 * np.exp(direction[0] * place), 0.78 + 0.05 * direction[1] * place, 1e3, 6345.0, 1e9)
         )
-        state = capillary_state(
-            5e-6 * np.exp(0.3 * direction[4] * place)[:, None], LOAD * np.exp(direction[5] * place), surface, skin,
-            TENSION, SKIN_ANGLE, 0.3 + 0.3 * direction[6] * place, refine=False,
-        )  # fmt: skip
+        skin = LayeredSkin(
+            young_modulus_layer=7e6 * np.exp(direction[2] * place),
+            young_modulus_bulk=20e3 * np.exp(direction[3] * place),
+            layer_thickness=20e-6,
+        )
+        state = paper(
+            5e-6 * np.exp(0.3 * direction[4] * place)[:, None],
+            load=LOAD * np.exp(direction[5] * place),
+            spectrum=surface,
+            skin=skin,
+            contact_angle_counterface=0.3 + 0.3 * direction[6] * place,
+            refine=False,
+        )
         return np.diff(np.log(state.relative_contact_area[:, 0])) / np.diff(place)
 
     # changes of the gradient from step to step shrink with the step where there is neither jump nor kink
@@ -301,8 +333,12 @@ def test_no_kinks_along_random_lines(seed):
 def test_shapes_and_impossible_arguments():
     assert paper(5e-6).wet_area.shape == ()
     assert paper([5e-6]).wet_area.shape == (1,)
-    grid = capillary_state([1e-6, 5e-6, 9e-6], np.array([[3e3], [6e3]]), SURFACE, WET, TENSION, SKIN_ANGLE,
-                           np.array([0.0, 0.2, 0.4, 0.6]), refine=False)  # fmt: skip
+    grid = paper(
+        [1e-6, 5e-6, 9e-6],
+        load=np.array([[3e3], [6e3]]),
+        contact_angle_counterface=np.array([0.0, 0.2, 0.4, 0.6]),
+        refine=False,
+    )
     assert grid.wet_area.shape == (2, 4, 3)
     bad = paper([np.nan, -1e-6, 0.0, 5e-6])
     for name in FIELDS:
@@ -313,18 +349,20 @@ def test_shapes_and_impossible_arguments():
         (LOAD, TENSION, 4.0),
         (np.nan, 0.07, 0.0),
     ):
-        assert np.isnan(capillary_state(5e-6, load, SURFACE, WET, tension, SKIN_ANGLE, angle).wet_area)
+        assert np.isnan(
+            paper(5e-6, load=load, surface_tension=tension, contact_angle_counterface=angle).wet_area
+        )
     with pytest.raises(InputError, match="closure is 'square'"):
         paper(5e-6, closure="square")
     with pytest.raises(InputError, match="branch is 'up'"):
-        capillary_state_at_gap(5e-6, LOAD, SURFACE, WET, TENSION, SKIN_ANGLE, 0.0, branch="up")
+        paper_at_gap(5e-6, branch="up")
 
 
 def test_films_at_the_nodes_of_the_interpolation_are_found():
     # there the root lies on the edge of its bracket, where rounding decides on which side
     source = GapSource(SURFACE, WET, np.float64(0.42), "gaussian")
     load, pull = np.array([LOAD]), np.array([TENSION * (np.cos(SKIN_ANGLE) + 1)])
-    separation = mean_separation(load, SURFACE, WET)
+    separation = mean_separation(load, SURFACE, skin=WET)
     with np.errstate(all="ignore"):
         curve = solve_curve(source, load, pull, separation, np.array([0.1e-6]))
     z, _ = curve.at(np.exp(curve.nodes[:, 1:-1]))
@@ -337,11 +375,22 @@ def test_thin_films_and_strong_pulls():
     state = paper([5e-12, 1e-6, 6e-6])
     assert np.isnan(state.total_pressure[0]) or state.total_pressure[0] > 100 * LOAD
     np.testing.assert_allclose(state.total_pressure[1:], paper([1e-6, 6e-6]).total_pressure, rtol=1e-9)
-    surface = SelfAffineSpectrum(10e-6, 0.8, 640.0, 3600.0, 2e9)
-    soft = LayeredSkin(1.4e6, 68e3, 0.5, 0.5, 20e-6)
-    separation = mean_separation(14e3, surface, soft)
-    strong = capillary_state(
-        separation * np.array([0.01, 0.1, 0.5, 0.9]), 14e3, surface, soft, TENSION, 0.6, 1.5
+    surface = SelfAffineSpectrum(
+        rms_height=10e-6,
+        hurst_exponent=0.8,
+        wavevector_min=640.0,
+        wavevector_rolloff=3600.0,
+        wavevector_max=2e9,
+    )
+    soft = LayeredSkin(young_modulus_layer=1.4e6, young_modulus_bulk=68e3, layer_thickness=20e-6)
+    separation = mean_separation(14e3, surface, skin=soft)
+    strong = paper(
+        separation * np.array([0.01, 0.1, 0.5, 0.9]),
+        load=14e3,
+        spectrum=surface,
+        skin=soft,
+        contact_angle_skin=0.6,
+        contact_angle_counterface=1.5,
     )
     assert np.all(strong.capillary_pressure > 0)
     assert np.all(strong.mean_separation < separation)

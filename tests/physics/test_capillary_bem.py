@@ -7,11 +7,11 @@ the same surface by the same solver, so that nothing but that step differs.
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 from scipy import fft
 from test_gaps_bem import WET, press, surface, wavevectors
 
 from skinbayes.contact import effective_modulus
-from skinbayes.roughness import SelfAffineSpectrum
 
 pytestmark = pytest.mark.slow
 
@@ -57,7 +57,7 @@ def pressed_evenly(heights, length, rounds=40):
 @pytest.mark.parametrize("seed", [0])
 def test_even_pull_stands_for_local_suction(seed):
     n, length = 512, 2 * np.pi / 1e3
-    spectrum = SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 6.345e3, 2 * np.pi / length * n / 4)
+    spectrum = surface_from((22.4e-6, 0.78, 1e3, 6.345e3, 2 * np.pi / length * n / 4))
     heights = surface(spectrum, length, n, seed)
     local, even, dry = (
         sucked(heights, length),

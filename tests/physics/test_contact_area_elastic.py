@@ -13,30 +13,30 @@ from scipy.special import erf
 from skinbayes.contact import (
     AREA_CORRECTION,
     LayeredSkin,
-    corrected_stress_variance,
+    corrected_twice_stress_variance,
     elastoplastic_contact_area,
     persson_contact_area,
     relative_contact_area,
-    stress_variance,
+    twice_stress_variance,
 )
 from skinbayes.friction import friction_coefficient
 from skinbayes.roughness import named_surface
 
 PRESSURE = 6830.0
 SURFACE = named_surface("paper_reference")
-WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-DRY = LayeredSkin(1e9, 20e3, 0.5, 0.5, 20e-6)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+DRY = LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)
 
 
-def diffuse(pressure, variances, cells=3000):
+def diffuse(pressure, twice_variances, cells=3000):
     """Crank–Nicolson solution of ∂P/∂V = ¼ ∂²P/∂σ², P = 0 at σ = 0, started as δ(σ − p); returns ∫P dσ at each V."""
     start = (pressure / 9) ** 2  # the Gaussian has not reached the wall yet
-    edge = pressure + 7 * np.sqrt(max(variances))
+    edge = pressure + 7 * np.sqrt(max(twice_variances))
     h = edge / cells
     sigma = h * (np.arange(cells) + 0.5)
     density = np.exp(-((sigma - pressure) ** 2) / start) / np.sqrt(np.pi * start)
     now, areas = start, []
-    for target in variances:
+    for target in twice_variances:
         for following in np.linspace(now, target, 400)[1:]:
             r = (following - now) / 8 / h**2
             laplacian = np.zeros((3, cells))
@@ -52,9 +52,9 @@ def diffuse(pressure, variances, cells=3000):
 
 
 def test_area_is_what_the_diffusion_of_stress_leaves():
-    variances = np.array([0.3, 2.0, 9.0]) * PRESSURE**2
-    found = persson_contact_area(PRESSURE, variances)
-    np.testing.assert_allclose(found, diffuse(PRESSURE, variances), rtol=1e-4)
+    twice_variances = np.array([0.3, 2.0, 9.0]) * PRESSURE**2
+    found = persson_contact_area(PRESSURE, twice_variances)
+    np.testing.assert_allclose(found, diffuse(PRESSURE, twice_variances), rtol=1e-4)
 
 
 def test_limits_of_the_area():
@@ -81,7 +81,9 @@ def phi_by_quadrature(y, gamma):
 def test_correction_inverts_its_integral(gamma):
     y = np.exp(np.linspace(np.log(1e-3), np.log(1e22), 90))
     ratio = np.array([phi_by_quadrature(value, gamma) for value in y])
-    np.testing.assert_allclose(corrected_stress_variance(3.0, 9 * ratio, gamma), 9 * y, rtol=5e-7)
+    np.testing.assert_allclose(
+        corrected_twice_stress_variance(3.0, 9 * ratio, area_correction=gamma), 9 * y, rtol=5e-7
+    )
 
 
 def test_correction_solves_its_differential_equation():
@@ -95,65 +97,81 @@ def test_correction_solves_its_differential_equation():
         atol=1e-14,
         method="DOP853",
     )
-    np.testing.assert_allclose(corrected_stress_variance(p, solution.t), solution.y[0], rtol=3e-7)
+    np.testing.assert_allclose(corrected_twice_stress_variance(p, solution.t), solution.y[0], rtol=3e-7)
 
 
 def test_limits_of_the_correction():
-    variance = np.array([0.0, 1e-6, 0.01, 1.0, 1e6, 1e22])
-    assert np.array_equal(corrected_stress_variance(1.0, variance, 1.0), variance)
-    np.testing.assert_allclose(corrected_stress_variance(1.0, variance[:3]), variance[:3], rtol=1e-15)
-    assert corrected_stress_variance(1.0, 1e22) == pytest.approx(0.42e22, rel=1e-12)
-    assert corrected_stress_variance(0.0, 5.0, 0.3) == pytest.approx(1.5, rel=1e-15)
-    assert corrected_stress_variance(1e-300, 1e5, 0.3) == pytest.approx(0.3e5, rel=1e-12)
+    twice_variance = np.array([0.0, 1e-6, 0.01, 1.0, 1e6, 1e22])
+    assert np.array_equal(
+        corrected_twice_stress_variance(1.0, twice_variance, area_correction=1.0), twice_variance
+    )
+    np.testing.assert_allclose(
+        corrected_twice_stress_variance(1.0, twice_variance[:3]), twice_variance[:3], rtol=1e-15
+    )
+    assert corrected_twice_stress_variance(1.0, 1e22) == pytest.approx(0.42e22, rel=1e-12)
+    assert corrected_twice_stress_variance(0.0, 5.0, area_correction=0.3) == pytest.approx(1.5, rel=1e-15)
+    assert corrected_twice_stress_variance(1e-300, 1e5, area_correction=0.3) == pytest.approx(
+        0.3e5, rel=1e-12
+    )
     for bad in (0.0, -0.1, 1.1, np.nan):
-        assert np.isnan(corrected_stress_variance(1.0, 2.0, bad))
-    assert np.isnan(corrected_stress_variance([-1.0, 1.0, np.nan], [1.0, -1.0, 1.0])).all()
+        assert np.isnan(corrected_twice_stress_variance(1.0, 2.0, area_correction=bad))
+    assert np.isnan(corrected_twice_stress_variance([-1.0, 1.0, np.nan], [1.0, -1.0, 1.0])).all()
 
 
 def test_correction_of_a_batch_agrees_with_its_rows_to_the_last_bit():
     rng = np.random.default_rng(3)
     gamma = np.append(rng.uniform(0.01, 1, 40), [1.0, 0.42, 0.42, np.nan])[:, None]
     pressure = np.exp(rng.uniform(-3, 9, (1, 5)))
-    variance = np.exp(rng.uniform(-5, 50, (44, 5)))
-    whole = corrected_stress_variance(pressure, variance, gamma)
+    twice_variance = np.exp(rng.uniform(-5, 50, (44, 5)))
+    whole = corrected_twice_stress_variance(pressure, twice_variance, area_correction=gamma)
     for i in range(44):
-        row = corrected_stress_variance(pressure, variance[i : i + 1], gamma[i : i + 1])
+        row = corrected_twice_stress_variance(
+            pressure, twice_variance[i : i + 1], area_correction=gamma[i : i + 1]
+        )
         assert np.array_equal(row[0], whole[i], equal_nan=True)
         for j in range(5):
-            alone = corrected_stress_variance(pressure[0, j], variance[i, j], gamma[i, 0])
+            alone = corrected_twice_stress_variance(
+                pressure[0, j], twice_variance[i, j], area_correction=gamma[i, 0]
+            )
             assert np.array_equal(alone, whole[i, j], equal_nan=True)
 
 
 @given(st.floats(1e-6, 1e6), st.floats(1e-6, 1e6), st.floats(1.001, 10), st.floats(1e-3, 1))
-def test_area_is_monotone(pressure, variance, factor, gamma):
-    area = relative_contact_area(pressure, variance, gamma)
+def test_area_is_monotone(pressure, twice_variance, factor, gamma):
+    area = relative_contact_area(pressure, twice_variance, area_correction=gamma)
     assert 0 <= area <= 1
-    assert relative_contact_area(pressure * factor, variance, gamma) >= area * (1 - 1e-6)
-    assert relative_contact_area(pressure, variance * factor, gamma) <= area * (1 + 1e-6)
-    assert persson_contact_area(pressure, variance) <= area * (1 + 1e-6)
-    effective = corrected_stress_variance(pressure, variance, gamma)
-    assert gamma * variance * (1 - 1e-6) <= effective <= variance * (1 + 1e-6)
+    assert relative_contact_area(pressure * factor, twice_variance, area_correction=gamma) >= area * (
+        1 - 1e-6
+    )
+    assert relative_contact_area(pressure, twice_variance * factor, area_correction=gamma) <= area * (
+        1 + 1e-6
+    )
+    assert persson_contact_area(pressure, twice_variance) <= area * (1 + 1e-6)
+    effective = corrected_twice_stress_variance(pressure, twice_variance, area_correction=gamma)
+    assert gamma * twice_variance * (1 - 1e-6) <= effective <= twice_variance * (1 + 1e-6)
 
 
 def test_wet_skin_of_the_paper():
-    variance = stress_variance(SURFACE, WET)
-    assert variance == pytest.approx(3.36644e14, rel=2e-6)
-    assert persson_contact_area(PRESSURE, variance) == pytest.approx(4.20040e-4, rel=2e-6)
-    assert relative_contact_area(PRESSURE, variance) == pytest.approx(6.48133e-4, rel=2e-6)
-    assert relative_contact_area(PRESSURE, variance, 0.406) == pytest.approx(
+    twice_variance = twice_stress_variance(SURFACE, WET)
+    assert twice_variance == pytest.approx(3.36644e14, rel=2e-6)
+    assert persson_contact_area(PRESSURE, twice_variance) == pytest.approx(4.20040e-4, rel=2e-6)
+    assert relative_contact_area(PRESSURE, twice_variance) == pytest.approx(6.48133e-4, rel=2e-6)
+    assert relative_contact_area(PRESSURE, twice_variance, area_correction=0.406) == pytest.approx(
         6.59e-4, rel=5e-4
     )  # the printed value
-    friction = friction_coefficient(15e6, relative_contact_area(PRESSURE, variance), PRESSURE)
+    friction = friction_coefficient(
+        15e6, relative_contact_area(PRESSURE, twice_variance), nominal_pressure=PRESSURE
+    )
     assert friction == pytest.approx(1.42, abs=0.005)
 
 
 def test_dry_skin_of_the_paper():
-    variance = stress_variance(SURFACE, DRY)
-    assert persson_contact_area(PRESSURE, variance) == pytest.approx(2.94031e-6, rel=3e-6)
-    area = elastoplastic_contact_area(PRESSURE, variance, 50e6)
+    twice_variance = twice_stress_variance(SURFACE, DRY)
+    assert persson_contact_area(PRESSURE, twice_variance) == pytest.approx(2.94031e-6, rel=3e-6)
+    area = elastoplastic_contact_area(PRESSURE, twice_variance, yield_stress=50e6)
     assert area.total == pytest.approx(PRESSURE / 50e6, rel=1e-12)  # 1.366e-4
     assert area.plastic_share == pytest.approx(1.0, rel=1e-12)
-    assert friction_coefficient(15e6, area.total, PRESSURE) == pytest.approx(0.3, rel=1e-12)
+    assert friction_coefficient(15e6, area.total, nominal_pressure=PRESSURE) == pytest.approx(0.3, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -163,6 +181,9 @@ def test_dry_skin_of_the_paper():
 )
 def test_onset_of_yielding_in_dry_skin(gamma, wavevectors):
     share = elastoplastic_contact_area(
-        PRESSURE, stress_variance(SURFACE, DRY, wavevectors), 50e6, gamma
+        PRESSURE,
+        twice_stress_variance(SURFACE, DRY, wavevector=wavevectors),
+        yield_stress=50e6,
+        area_correction=gamma,
     ).plastic_share
     np.testing.assert_allclose(share, [0.1, 0.5, 0.99], atol=1e-3)

@@ -16,8 +16,8 @@ from skinbayes.contact import (
     effective_modulus,
     elastoplastic_contact_area,
     relative_contact_area,
-    stress_variance,
     total_contact_area,
+    twice_stress_variance,
 )
 from skinbayes.contact.elastoplastic import _fourier, _images
 from skinbayes.roughness import named_surface
@@ -54,7 +54,7 @@ def diffuse_between_walls(ratio, spreads, cells=2000):
 def test_parts_are_what_the_diffusion_of_stress_leaves(ratio):
     spreads = np.array([0.25, 0.5, 0.8, 1.3])
     rows = diffuse_between_walls(ratio, spreads)
-    area = elastoplastic_contact_area(ratio, spreads**2, 1.0, 1.0)
+    area = elastoplastic_contact_area(ratio, spreads**2, yield_stress=1.0, area_correction=1.0)
     np.testing.assert_allclose(area.elastic, rows[:, 0], rtol=2e-4)
     np.testing.assert_allclose(area.plastic, rows[:, 1], rtol=2e-3, atol=1e-7)
     np.testing.assert_allclose(area.non_contact, rows[:, 2], rtol=2e-3, atol=1e-7)
@@ -69,7 +69,7 @@ def test_load_is_conserved(ratio, spread):
     n = np.arange(1, 400)
     modes = np.sin(n * np.pi * ratio) * np.exp(-((n * np.pi * spread) ** 2) / 4)
     carried = 2 * np.sum(modes * -((-1.0) ** n) / (n * np.pi))
-    area = elastoplastic_contact_area(ratio, spread**2, 1.0, 1.0)
+    area = elastoplastic_contact_area(ratio, spread**2, yield_stress=1.0, area_correction=1.0)
     assert carried + area.plastic == pytest.approx(ratio, rel=1e-11)
 
 
@@ -111,12 +111,12 @@ def exact_parts(ratio, spread):
 def test_both_parts_keep_their_relative_accuracy(ratio, spread):
     elastic, plastic = exact_parts(ratio, spread)
     # γ = 1, so that V_eff = V; s² is chosen first and its root taken by the function under test
-    area = elastoplastic_contact_area(ratio, spread * spread, 1.0, 1.0)
+    area = elastoplastic_contact_area(ratio, spread * spread, yield_stress=1.0, area_correction=1.0)
     if elastic > 1e-250:
         assert area.elastic == pytest.approx(elastic, rel=1e-12, abs=0)
     if plastic > 1e-250:
         assert area.plastic == pytest.approx(plastic, rel=1e-12, abs=0)
-    total = total_contact_area(ratio, spread * spread, 1.0, 1.0)
+    total = total_contact_area(ratio, spread * spread, yield_stress=1.0, area_correction=1.0)
     assert total == pytest.approx(elastic + plastic, rel=1e-12, abs=0)
 
 
@@ -126,12 +126,14 @@ def test_both_parts_together_alone_are_the_sum_of_both():
     spread = np.exp(rng.uniform(-4, 2, 400)) * limit
     gamma = rng.uniform(0.2, 1.0, 400)
     pressure[:3], limit[3:6], spread[6] = (0.0, np.nan, -1.0), (np.inf, -1.0, 0.0), np.nan
-    arguments = pressure, np.square(spread), limit, gamma
-    both = total_contact_area(*arguments)
-    np.testing.assert_allclose(both, elastoplastic_contact_area(*arguments).total, rtol=1e-12)
+    square = np.square(spread)
+    both = total_contact_area(pressure, square, yield_stress=limit, area_correction=gamma)
+    parts = elastoplastic_contact_area(pressure, square, yield_stress=limit, area_correction=gamma)
+    np.testing.assert_allclose(both, parts.total, rtol=1e-12)
     assert np.isnan(both[[1, 2, 4, 5, 6]]).all() and np.isfinite(both[7:]).all()
     for i in range(0, 400, 40):  # a batch and its rows
-        assert total_contact_area(*(x[i] for x in arguments)) == both[i] or np.isnan(both[i])
+        one = total_contact_area(pressure[i], square[i], yield_stress=limit[i], area_correction=gamma[i])
+        assert one == both[i] or np.isnan(both[i])
 
 
 def test_both_series_agree_where_both_converge():
@@ -145,36 +147,36 @@ def test_both_series_agree_where_both_converge():
 
 
 def test_elastic_limit():
-    pressure, variance = np.array([10.0, 1e3, 6830.0]), np.array([1e4, 1e12, 3e14])
-    hard = elastoplastic_contact_area(pressure, variance, np.inf)
-    np.testing.assert_allclose(hard.elastic, relative_contact_area(pressure, variance), rtol=1e-15)
+    pressure, twice_variance = np.array([10.0, 1e3, 6830.0]), np.array([1e4, 1e12, 3e14])
+    hard = elastoplastic_contact_area(pressure, twice_variance, yield_stress=np.inf)
+    np.testing.assert_allclose(hard.elastic, relative_contact_area(pressure, twice_variance), rtol=1e-15)
     assert np.all(hard.plastic == 0)
     np.testing.assert_allclose(hard.total + hard.non_contact, 1.0, rtol=1e-14)
-    nearly = elastoplastic_contact_area(pressure, variance, 1e12)
+    nearly = elastoplastic_contact_area(pressure, twice_variance, yield_stress=1e12)
     np.testing.assert_allclose(nearly.elastic, hard.elastic, rtol=1e-13)
 
 
 def test_plastic_limit_carries_the_load_at_the_yield_stress():
-    area = elastoplastic_contact_area([1.0, 500.0, 6830.0], 1e22, 5e7)
+    area = elastoplastic_contact_area([1.0, 500.0, 6830.0], 1e22, yield_stress=5e7)
     np.testing.assert_allclose(area.plastic, np.array([1.0, 500.0, 6830.0]) / 5e7, rtol=1e-13)
     assert np.all(area.elastic < 1e-100)
     np.testing.assert_allclose(area.plastic_share, 1.0, rtol=1e-15)
 
 
 def test_smooth_surface_touches_everywhere_and_does_not_yield():
-    area = elastoplastic_contact_area(1.0, 0.0, [2.0, np.inf])
+    area = elastoplastic_contact_area(1.0, 0.0, yield_stress=[2.0, np.inf])
     assert np.all(area.elastic == 1) and np.all(area.plastic == 0) and np.all(area.non_contact == 0)
 
 
 def test_pressure_at_and_above_the_yield_stress_is_full_plastic_contact():
-    area = elastoplastic_contact_area([1.0, 2.0], [0.3, 1e9], 1.0)
+    area = elastoplastic_contact_area([1.0, 2.0], [0.3, 1e9], yield_stress=1.0)
     assert np.all(area.plastic == 1) and np.all(area.elastic == 0) and np.all(area.non_contact == 0)
-    below = elastoplastic_contact_area(1 - 1e-9, 0.3, 1.0)
+    below = elastoplastic_contact_area(1 - 1e-9, 0.3, yield_stress=1.0)
     assert below.plastic == pytest.approx(1.0, abs=1e-8)
 
 
 def test_no_load_no_contact():
-    area = elastoplastic_contact_area(0.0, 1.0, [0.5, 5.0, np.inf])
+    area = elastoplastic_contact_area(0.0, 1.0, yield_stress=[0.5, 5.0, np.inf])
     assert np.all(area.total == 0) and np.all(np.isnan(area.plastic_share))
     np.testing.assert_allclose(area.non_contact, 1.0, rtol=1e-14)
 
@@ -183,15 +185,15 @@ def test_impossible_arguments_give_nan():
     area = elastoplastic_contact_area(
         [-1.0, 1.0, 1.0, 1.0, np.nan, 1.0],
         [1.0, -1.0, 1.0, 1.0, 1.0, np.nan],
-        [1.0, 1.0, -1.0, 0.0, 1.0, 1.0],
+        yield_stress=[1.0, 1.0, -1.0, 0.0, 1.0, 1.0],
     )
     assert np.isnan([area.elastic, area.plastic, area.non_contact]).all()
-    assert np.isnan(elastoplastic_contact_area(1.0, 1.0, 3.0, 1.5).total)
+    assert np.isnan(elastoplastic_contact_area(1.0, 1.0, yield_stress=3.0, area_correction=1.5).total)
 
 
 @given(st.floats(1e-12, 0.999999), st.floats(1e-3, 30.0))
 def test_parts_sum_to_one_and_stay_in_range(ratio, spread):
-    area = elastoplastic_contact_area(ratio, spread**2, 1.0, 1.0)
+    area = elastoplastic_contact_area(ratio, spread**2, yield_stress=1.0, area_correction=1.0)
     for part in (area.elastic, area.plastic, area.non_contact):
         assert 0 <= part <= 1 + 1e-14
     assert area.elastic + area.plastic + area.non_contact == pytest.approx(1.0, abs=1e-13)
@@ -199,7 +201,9 @@ def test_parts_sum_to_one_and_stay_in_range(ratio, spread):
 
 @given(st.floats(1e-9, 0.9), st.floats(1e-2, 10.0), st.floats(1.01, 3.0))
 def test_more_roughness_means_less_elastic_and_more_plastic_area(ratio, spread, factor):
-    area = elastoplastic_contact_area(ratio, [spread**2, (factor * spread) ** 2], 1.0, 1.0)
+    area = elastoplastic_contact_area(
+        ratio, [spread**2, (factor * spread) ** 2], yield_stress=1.0, area_correction=1.0
+    )
     assert area.elastic[1] <= area.elastic[0] * (1 + 1e-12)
     assert area.plastic[1] >= area.plastic[0] * (1 - 1e-12)
 
@@ -207,14 +211,14 @@ def test_more_roughness_means_less_elastic_and_more_plastic_area(ratio, spread, 
 def test_batch_and_rows_agree_to_the_last_bit():
     rng = np.random.default_rng(11)
     pressure = np.exp(rng.uniform(0, 12, (37, 1)))
-    variance = np.exp(rng.uniform(0, 45, (37, 6)))
+    twice_variance = np.exp(rng.uniform(0, 45, (37, 6)))
     limit = np.append(np.exp(rng.uniform(8, 20, 36)), np.inf)[:, None]
-    whole = elastoplastic_contact_area(pressure, variance, limit)
+    whole = elastoplastic_contact_area(pressure, twice_variance, yield_stress=limit)
     for i in range(37):
-        row = elastoplastic_contact_area(pressure[i], variance[i], limit[i])
+        row = elastoplastic_contact_area(pressure[i], twice_variance[i], yield_stress=limit[i])
         assert all(np.array_equal(a, b[i]) for a, b in zip(row, whole, strict=True))
         for j in range(6):
-            alone = elastoplastic_contact_area(pressure[i, 0], variance[i, j], limit[i, 0])
+            alone = elastoplastic_contact_area(pressure[i, 0], twice_variance[i, j], yield_stress=limit[i, 0])
             assert all(a == b[i, j] for a, b in zip(alone, whole, strict=True))
 
 
@@ -223,17 +227,17 @@ def test_batch_and_rows_agree_to_the_last_bit():
 def test_dry_skin_from_the_spectrum_to_the_plastic_share(upper, gamma):
     """The whole chain written again: quad, an ODE for the correction, image sources as they stand."""
     surface, pressure, limit = named_surface("paper_reference"), 6830.0, 50e6
-    skin = LayeredSkin(1e9, 20e3, 0.5, 0.5, 20e-6)
+    skin = LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)
 
     def rate(t):
         q = np.exp(t)
         return np.pi * q**4 * surface.power(q) * effective_modulus(skin, q) ** 2
 
     edges = np.log([1e3, 6.345e3, 3e4, upper])
-    variance = sum(quad(rate, a, b, epsabs=0, epsrel=1e-10)[0] for a, b in itertools.pairwise(edges))
+    twice_variance = sum(quad(rate, a, b, epsabs=0, epsrel=1e-10)[0] for a, b in itertools.pairwise(edges))
     solved = solve_ivp(
         lambda x, y: np.exp(x) * (gamma + (1 - gamma) * erf(pressure * np.exp(-y / 2)) ** 2) / np.exp(y),
-        (np.log(1e4), np.log(variance)),
+        (np.log(1e4), np.log(twice_variance)),
         [np.log(1e4)],
         rtol=1e-11,
         atol=1e-12,
@@ -243,7 +247,12 @@ def test_dry_skin_from_the_spectrum_to_the_plastic_share(upper, gamma):
     k = np.arange(1, 12)
     d = erfc((k - r) / s) - erfc((k + r) / s)
     elastic, plastic = erf(r / s) + np.sum((-1.0) ** k * d), np.sum(d[::2])
-    area = elastoplastic_contact_area(pressure, stress_variance(surface, skin, upper), limit, gamma)
+    area = elastoplastic_contact_area(
+        pressure,
+        twice_stress_variance(surface, skin, wavevector=upper),
+        yield_stress=limit,
+        area_correction=gamma,
+    )
     assert area.elastic == pytest.approx(
         elastic, rel=1e-6, abs=1e-8 if s > 1 else 0
     )  # images cancel when s > 1

@@ -10,7 +10,7 @@ from skinbayes.contact import (
     elastoplastic_contact_area,
     mean_separation,
     relative_contact_area,
-    stress_variance,
+    twice_stress_variance,
 )
 from skinbayes.roughness import named_surface
 from skinbayes.wetting import (
@@ -24,16 +24,26 @@ from skinbayes.wetting import (
 from skinbayes.wetting._falling import falling_root
 
 SURFACE = named_surface("paper_reference")
-WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 LOAD, SHEAR, TENSION, ANGLE = 6830.0, 15e6, 0.0727, np.radians(80.0)
 RATE = evaporation_rate_from_pressures(5.6e3, 1.15e3)
 START, FILM = 30.0, 90e-6
+DRYING = {"evaporation_rate": RATE, "frictional_shear_stress": SHEAR, "nominal_pressure": LOAD}
+RUN = {"initial_film": FILM, **DRYING}
+WATER = {"surface_tension": TENSION, "contact_angle_skin": ANGLE}
+HARD = {"young_modulus_layer_dry": 1e9, "yield_stress": 50e6}
 
 
 def contact_of(**options):
     glass = options.pop("glass", 0.0)
     return film_contact(
-        LOAD, SURFACE, options.pop("skin", WET), TENSION, ANGLE, np.radians(glass), 1e9, 50e6, **options
+        LOAD,
+        SURFACE,
+        **WATER,
+        **HARD,
+        skin=options.pop("skin", WET),
+        contact_angle_counterface=np.radians(glass),
+        **options,
     )
 
 
@@ -41,13 +51,13 @@ CONTACT = contact_of()
 
 
 def curve(time, contact=CONTACT, spread=2e-7, start=START, film=FILM):
-    return drying_curve(time, start, film, RATE, contact, SHEAR, LOAD, spread)
+    return drying_curve(time, start, **DRYING, initial_film=film, contact=contact, film_spread=spread)
 
 
 @pytest.mark.parametrize(("closure", "time", "friction"), [("gaussian", 513.0, 2.31), ("sharp", 490.0, 2.49)])
 def test_timeline_of_the_paper(closure, time, friction):
     contact = contact_of(closure=closure)
-    features = drying_features(START, FILM, RATE, contact, SHEAR, LOAD)
+    features = drying_features(START, FILM, **DRYING, contact=contact)
     assert features.dry_friction == pytest.approx(0.300, abs=0.001)
     assert features.wet_plateau == pytest.approx(1.42, abs=0.005)
     assert features.peak_friction == pytest.approx(friction, rel=0.02)
@@ -63,16 +73,16 @@ def test_timeline_of_the_paper(closure, time, friction):
 
 
 def test_regimes_follow_the_physics_behind_them():
-    separation = mean_separation(LOAD, SURFACE, WET)
+    separation = mean_separation(LOAD, SURFACE, skin=WET)
     assert CONTACT.film[-1] == pytest.approx(separation, rel=1e-12)
     assert CONTACT.area[-1] == pytest.approx(
-        relative_contact_area(LOAD, stress_variance(SURFACE, WET)), rel=1e-5
+        relative_contact_area(LOAD, twice_stress_variance(SURFACE, WET)), rel=1e-5
     )
-    dry = LayeredSkin(1e9, 20e3, 0.5, 0.5, 20e-6)
-    plastic = elastoplastic_contact_area(LOAD, stress_variance(SURFACE, dry), 50e6).total
+    dry = LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    plastic = elastoplastic_contact_area(LOAD, twice_stress_variance(SURFACE, dry), yield_stress=50e6).total
     assert CONTACT.dry_area == pytest.approx(plastic, rel=1e-12)
     films = np.array([0.15e-6, 1e-6, 3.3e-6, 8e-6, 12e-6])
-    state = capillary_state(films, LOAD, SURFACE, WET, TENSION, ANGLE, 0.0)
+    state = capillary_state(films, LOAD, **WATER, spectrum=SURFACE, skin=WET, contact_angle_counterface=0.0)
     local = CONTACT.average(films, np.array(0.0))[0]
     np.testing.assert_allclose(local, state.relative_contact_area, rtol=1e-3)
     run = curve(np.linspace(0, 600, 1201))
@@ -133,7 +143,7 @@ def test_slope_is_the_derivative_and_the_curve_has_no_kinks():
 
 def test_features_agree_with_a_fine_curve():
     for spread in (1e-7, 5e-7, 2e-6):
-        features = drying_features(START, FILM, RATE, CONTACT, SHEAR, LOAD, spread)
+        features = drying_features(START, FILM, **DRYING, contact=CONTACT, film_spread=spread)
         times = np.linspace(450, 560, 11_001)
         friction = curve(times, spread=spread).friction_coefficient
         best = np.argmax(friction)
@@ -150,20 +160,36 @@ def test_features_agree_with_a_fine_curve():
 
 
 def test_timing_moves_with_the_film_and_not_with_the_shear_stress():
-    features = drying_features(START, np.array([60e-6, 90e-6]), RATE, CONTACT, SHEAR, LOAD)
+    features = drying_features(START, np.array([60e-6, 90e-6]), **DRYING, contact=CONTACT)
     assert np.diff(features.peak_time)[0] == pytest.approx(30e-6 / RATE, rel=1e-9)
     assert features.peak_width[0] == pytest.approx(features.peak_width[1], rel=1e-9)
-    other = drying_features(START, 60e-6, RATE, CONTACT, 0.5 * SHEAR, LOAD)
+    other = drying_features(
+        START,
+        60e-6,
+        evaporation_rate=RATE,
+        contact=CONTACT,
+        frictional_shear_stress=0.5 * SHEAR,
+        nominal_pressure=LOAD,
+    )
     assert other.peak_time == features.peak_time[0]
     assert other.peak_friction == pytest.approx(features.peak_friction[0] / 2, rel=1e-12)
-    faster = drying_features(START, 60e-6, 2 * RATE, CONTACT, SHEAR, LOAD)
+    faster = drying_features(
+        START,
+        60e-6,
+        evaporation_rate=2 * RATE,
+        contact=CONTACT,
+        frictional_shear_stress=SHEAR,
+        nominal_pressure=LOAD,
+    )
     assert faster.peak_time - START == pytest.approx((features.peak_time[0] - START) / 2, rel=1e-9)
 
 
 def test_features_change_smoothly():
     modulus = 7e6 * np.exp(np.linspace(-0.1, 0.1, 41))
-    contact = contact_of(skin=LayeredSkin(modulus, 20e3, 0.5, 0.5, 20e-6))
-    features = drying_features(START, FILM, RATE, contact, SHEAR, LOAD)
+    contact = contact_of(
+        skin=LayeredSkin(young_modulus_layer=modulus, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    )
+    features = drying_features(START, FILM, **DRYING, contact=contact)
     for value in (features.peak_time, features.peak_friction, features.peak_width, features.wet_plateau):
         steps = np.diff(value)
         assert np.max(np.abs(np.diff(steps))) < 0.03 * np.max(np.abs(steps))  # no step, no kink
@@ -187,7 +213,7 @@ def test_roots_of_features_are_found_whatever_the_function():
 
 def test_polypropylene_has_no_peak():
     contact = contact_of(glass=102.0)
-    features = drying_features(START, FILM, RATE, contact, SHEAR, LOAD)
+    features = drying_features(START, FILM, **DRYING, contact=contact)
     assert np.isnan([features.peak_time, features.peak_friction, features.peak_width]).all()
     assert features.wet_plateau == pytest.approx(1.42, abs=0.005)
     run = curve(np.linspace(31, 600, 500), contact)
@@ -208,9 +234,13 @@ def test_hardening_layer():
         return (thickness / 1e-6) ** 2 / (1 + (thickness / 1e-6) ** 2)
 
     share = wet_share(film) / wet_share(hard.film[-1])
-    skin = LayeredSkin(7e6**share * 1e9 ** (1 - share), 20e3, 0.5, 0.5, 20e-6)
-    state = capillary_state(film, LOAD, SURFACE, skin, TENSION, ANGLE, 0.0)
-    area = elastoplastic_contact_area(state.total_pressure, stress_variance(SURFACE, skin), 50e6).total
+    skin = LayeredSkin(
+        young_modulus_layer=7e6**share * 1e9 ** (1 - share), young_modulus_bulk=20e3, layer_thickness=20e-6
+    )
+    state = capillary_state(film, LOAD, **WATER, spectrum=SURFACE, skin=skin, contact_angle_counterface=0.0)
+    area = elastoplastic_contact_area(
+        state.total_pressure, twice_stress_variance(SURFACE, skin), yield_stress=50e6
+    ).total
     assert hard.area[place] == pytest.approx(area, rel=0.02)
     # a layer that never hardens above the floor is the plain case
     late = contact_of(hardening_film=1e-10)
@@ -221,18 +251,33 @@ def test_hardening_layer():
 
 def test_batches_agree_with_rows_to_the_last_bit():
     modulus, glass = np.array([4e6, 7e6, 12e6]), np.array([0.0, 0.3, 0.5])
-    arguments = (np.array([25e3, 20e3, 15e3]), 0.5, 0.5, 20e-6)
-    batch = film_contact(LOAD, SURFACE, LayeredSkin(modulus, *arguments), TENSION, ANGLE, glass, 1e9, 50e6)
+    bulk = np.array([25e3, 20e3, 15e3])
+    batch = film_contact(
+        LOAD,
+        SURFACE,
+        **WATER,
+        **HARD,
+        skin=LayeredSkin(young_modulus_layer=modulus, young_modulus_bulk=bulk, layer_thickness=20e-6),
+        contact_angle_counterface=glass,
+    )
     times = np.linspace(0, 600, 7)
-    runs = drying_curve(times, START, FILM, RATE, batch, SHEAR, LOAD)
-    features = drying_features(START, FILM, RATE, batch, SHEAR, LOAD)
+    runs = drying_curve(times, START, **RUN, contact=batch)
+    features = drying_features(START, FILM, **DRYING, contact=batch)
     for i in range(3):
-        skin = LayeredSkin(modulus[i], arguments[0][i], 0.5, 0.5, 20e-6)
-        one = film_contact(LOAD, SURFACE, skin, TENSION, ANGLE, glass[i], 1e9, 50e6)
+        skin = LayeredSkin(young_modulus_layer=modulus[i], young_modulus_bulk=bulk[i], layer_thickness=20e-6)
+        one = film_contact(LOAD, SURFACE, **WATER, **HARD, skin=skin, contact_angle_counterface=glass[i])
         for name in ("film", "area", "dry_area"):
             np.testing.assert_array_equal(getattr(batch, name)[i], getattr(one, name))
-        for whole, part in ((runs, drying_curve(times, START, FILM, RATE, one, SHEAR, LOAD)),
-                            (features, drying_features(START, FILM, RATE, one, SHEAR, LOAD))):  # fmt: skip
+        for whole, part in (
+            (
+                runs,
+                drying_curve(times, START, **RUN, contact=one),
+            ),
+            (
+                features,
+                drying_features(START, FILM, **DRYING, contact=one),
+            ),
+        ):
             for left, right in zip(whole, part, strict=True):
                 np.testing.assert_array_equal(left[i] if np.ndim(left) else left, right)
 
@@ -240,14 +285,30 @@ def test_batches_agree_with_rows_to_the_last_bit():
 def test_shapes_and_impossible_arguments():
     assert curve(100.0).friction_coefficient.shape == ()
     assert curve([100.0, 200.0]).friction_coefficient.shape == (2,)
-    wide = drying_curve([100.0, 200.0, 300.0], START, np.array([[50e-6], [90e-6]]), np.array([1e-7, 2e-7]), CONTACT,
-                        SHEAR, LOAD)  # fmt: skip
-    assert wide.relative_contact_area.shape == (2, 2, 3)
-    assert drying_features(START, np.array([50e-6, 90e-6]), RATE, CONTACT, SHEAR, LOAD).peak_time.shape == (
-        2,
+    wide = drying_curve(
+        [100.0, 200.0, 300.0],
+        START,
+        initial_film=np.array([[50e-6], [90e-6]]),
+        evaporation_rate=np.array([1e-7, 2e-7]),
+        contact=CONTACT,
+        frictional_shear_stress=SHEAR,
+        nominal_pressure=LOAD,
     )
-    assert np.isnan(drying_curve(100.0, START, -1e-6, RATE, CONTACT, SHEAR, LOAD).friction_coefficient)
-    assert np.isnan(drying_features(START, FILM, -RATE, CONTACT, SHEAR, LOAD).peak_friction)
+    assert wide.relative_contact_area.shape == (2, 2, 3)
+    assert drying_features(START, np.array([50e-6, 90e-6]), **DRYING, contact=CONTACT).peak_time.shape == (2,)
+    assert np.isnan(
+        drying_curve(100.0, START, **DRYING, initial_film=-1e-6, contact=CONTACT).friction_coefficient
+    )
+    assert np.isnan(
+        drying_features(
+            START,
+            FILM,
+            evaporation_rate=-RATE,
+            contact=CONTACT,
+            frictional_shear_stress=SHEAR,
+            nominal_pressure=LOAD,
+        ).peak_friction
+    )
     assert np.isnan(contact_of(film_floor=-1e-7).area).all()
-    toy = FilmContact(np.array([1.0, 2.0, 3.0]), np.array([0.5, 0.5, 0.5]), np.array(0.5))
+    toy = FilmContact(film=np.array([1.0, 2.0, 3.0]), area=np.array([0.5, 0.5, 0.5]), dry_area=np.array(0.5))
     np.testing.assert_allclose(toy.average(np.array([-1.0, 1.5, 9.0]), np.array(0.7))[0], 0.5, rtol=1e-14)

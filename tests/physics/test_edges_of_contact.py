@@ -8,6 +8,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from named_fields import skin_from, surface_from
 
 from skinbayes.contact import (
     LayeredSkin,
@@ -25,11 +26,11 @@ from skinbayes.contact import (
     reduced_modulus,
     relative_contact_area,
     sphere_contact,
-    stress_variance,
     surface_response,
     total_contact_area,
+    twice_stress_variance,
 )
-from skinbayes.roughness import SelfAffineSpectrum, named_surface, rms_height, rms_slope, total_area_ratio
+from skinbayes.roughness import named_surface, rms_height, rms_slope, total_area_ratio
 
 INSIDE = 1e-12  # relative distance from an end
 SURFACES = ("free", "no plateau", "plateau only", "H = 1", "narrow")
@@ -57,7 +58,7 @@ def surfaces(kind, count, off=0.0):
     elif kind == "narrow":
         last = first * (1 + 1e-6)
         knee = first
-    return SelfAffineSpectrum(height, hurst, first, knee, last)
+    return surface_from((height, hurst, first, knee, last))
 
 
 def skins(kind, count, off=0.0):
@@ -78,12 +79,12 @@ def skins(kind, count, off=0.0):
         thickness = np.full(count, 1e-15)
     elif kind == "thick":
         thickness = np.full(count, 1e3)
-    return LayeredSkin(layer, bulk, upper, lower, thickness)
+    return skin_from((layer, bulk, upper, lower, thickness))
 
 
-def loads(variance):
+def loads(twice_variance):
     rng = np.random.default_rng(13)
-    return between(rng, 1e-6, 5.0, variance.size) * np.sqrt(variance)
+    return between(rng, 1e-6, 5.0, twice_variance.size) * np.sqrt(twice_variance)
 
 
 def check_all_edges(surface_kind, skin_kind, count):
@@ -91,35 +92,35 @@ def check_all_edges(surface_kind, skin_kind, count):
     skin, inner_skin = (skins(skin_kind, count, off) for off in (0.0, INSIDE))
     np.testing.assert_allclose(rms_height(surface), surface.rms_height, rtol=1e-9)
     np.testing.assert_allclose(rms_slope(surface), rms_slope(inner_surface), rtol=1e-6)
-    variance = stress_variance(surface, skin)
-    assert (variance > 0).all()
-    np.testing.assert_allclose(variance, stress_variance(inner_surface, inner_skin), rtol=1e-6)
+    twice_variance = twice_stress_variance(surface, skin)
+    assert (twice_variance > 0).all()
+    np.testing.assert_allclose(twice_variance, twice_stress_variance(inner_surface, inner_skin), rtol=1e-6)
     if skin_kind == "alike" and surface_kind != "free":
         # no layer at all: a half-space, V = E*² s²/2; a plateau of eight decades is beyond the twelve nodes that it has
         close = 5e-4 if surface_kind == "plateau only" else 5e-5
         modulus = reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk)
-        np.testing.assert_allclose(variance, np.square(modulus * rms_slope(surface)) / 2, rtol=close)
-    pressure = loads(variance)
+        np.testing.assert_allclose(twice_variance, np.square(modulus * rms_slope(surface)) / 2, rtol=close)
+    pressure = loads(twice_variance)
     for gamma in (1.0, 0.42, 1e-3):
-        mean = mean_separation(pressure[:, None], surface, skin, gamma)
-        inner = mean_separation(pressure[:, None], inner_surface, inner_skin, gamma)
+        mean = mean_separation(pressure[:, None], surface, skin=skin, area_correction=gamma)
+        inner = mean_separation(pressure[:, None], inner_surface, skin=inner_skin, area_correction=gamma)
         assert np.isfinite(mean).all()
         np.testing.assert_allclose(mean, inner, rtol=1e-6, atol=1e-200)
-        found = pressure_at_separation(mean, surface, skin, gamma)[:, 0]
+        found = pressure_at_separation(mean, surface, skin=skin, area_correction=gamma)[:, 0]
         unclosed = mean[:, 0] > 1e-200
         np.testing.assert_allclose(found[unclosed], pressure[unclosed], rtol=1e-7)
-    mean = mean_separation(pressure[:, None], surface, skin)
+    mean = mean_separation(pressure[:, None], surface, skin=skin)
     # where contact is closed but for rounding nothing can carry the mean
     unclosed = mean[:, 0] > 1e-13 * surface.rms_height
     for closure in ("gaussian", "sharp"):
-        gaps = gap_distribution(pressure[:, None], surface, skin, 0.42, closure)
+        gaps = gap_distribution(pressure[:, None], surface, skin=skin, area_correction=0.42, closure=closure)
         assert all(np.isfinite(getattr(gaps, field.name)).all() for field in fields(gaps))
         np.testing.assert_allclose(gaps.film(np.inf)[unclosed], mean[unclosed], rtol=1e-6)
         np.testing.assert_allclose(gaps.cumulative(np.inf), 1.0, rtol=1e-9)
         share = gaps.cumulative(mean[..., None])
         assert ((share >= gaps.contact_fraction[..., None] - 1e-12) & (share <= 1 + 1e-12)).all()
-    inner_gaps = gap_distribution(pressure[:, None], inner_surface, inner_skin)
-    gaps = gap_distribution(pressure[:, None], surface, skin)
+    inner_gaps = gap_distribution(pressure[:, None], inner_surface, skin=inner_skin)
+    gaps = gap_distribution(pressure[:, None], surface, skin=skin)
     # 2e-3 is the accuracy of the cells, see `gap_distribution`
     np.testing.assert_allclose(
         gaps.cumulative(mean[..., None]), inner_gaps.cumulative(mean[..., None]), atol=2e-3
@@ -142,13 +143,15 @@ def test_edges_of_spectra_and_skins_in_wide_boxes(surface, skin):
 @pytest.mark.parametrize("end", ["wavevector_min", "wavevector_max"])
 def test_a_spectrum_without_plateau_or_without_decay_has_an_inverse(end):
     rng = np.random.default_rng(1)
-    surface = SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 1e3 if end == "wavevector_min" else 1e6, 1e6)
-    skin = LayeredSkin(between(rng, 1e5, 1e9, 300), 20e3, 0.5, 0.5, 20e-6)
+    surface = surface_from((22.4e-6, 0.78, 1e3, 1e3 if end == "wavevector_min" else 1e6, 1e6))
+    skin = LayeredSkin(
+        young_modulus_layer=between(rng, 1e5, 1e9, 300), young_modulus_bulk=20e3, layer_thickness=20e-6
+    )
     pressure = between(rng, 10.0, 1e6, 300)
-    mean = mean_separation(pressure[:, None], surface, skin)
+    mean = mean_separation(pressure[:, None], surface, skin=skin)
     unclosed = mean > 1e-200  # in closed contact the separation says nothing of the pressure
     assert unclosed.sum() > 200
-    found = pressure_at_separation(mean, surface, skin)
+    found = pressure_at_separation(mean, surface, skin=skin)
     np.testing.assert_allclose(found[unclosed], pressure[:, None][unclosed], rtol=1e-8)
 
 
@@ -158,8 +161,8 @@ def test_edges_of_the_area():
         # without roughness contact is complete under any load, with it and hardly a load A = (2/√π) p/√(γV)
         assert relative_contact_area(pressure, 0.0) == 1.0
         assert persson_contact_area(pressure, 0.0) == 1.0
-        assert total_contact_area(pressure, 0.0, np.inf) == 1.0
-        assert elastoplastic_contact_area(pressure, 0.0, np.inf).elastic == 1.0
+        assert total_contact_area(pressure, 0.0, yield_stress=np.inf) == 1.0
+        assert elastoplastic_contact_area(pressure, 0.0, yield_stress=np.inf).elastic == 1.0
     assert relative_contact_area(1e-200, 1e14) == pytest.approx(1e-207 * 2 / np.sqrt(np.pi * 0.42), rel=1e-6)
     for function in (persson_contact_area, relative_contact_area):
         assert function(0.0, 0.0) == 0.0
@@ -168,57 +171,68 @@ def test_edges_of_the_area():
             and np.isnan(function(np.nan, 1e14))
             and np.isnan(function(1.0, np.nan))
         )
-    assert total_contact_area(0.0, 0.0, 5e7) == 0.0
-    yielded = elastoplastic_contact_area([5e7, 6e7], 1e14, 5e7)
+    assert total_contact_area(0.0, 0.0, yield_stress=5e7) == 0.0
+    yielded = elastoplastic_contact_area([5e7, 6e7], 1e14, yield_stress=5e7)
     np.testing.assert_array_equal(yielded.total, 1.0)
-    beside = elastoplastic_contact_area(5e7 * (1 - 1e-12), 1e14, 5e7)
+    beside = elastoplastic_contact_area(5e7 * (1 - 1e-12), 1e14, yield_stress=5e7)
     assert beside.total == pytest.approx(1.0, abs=1e-9)
     for gamma in (0.0, -0.1, 1 + 1e-12, np.nan):
-        assert np.isnan(relative_contact_area(1.0, 1.0, gamma))
-    assert relative_contact_area(1e3, 1e8, 1.0) == persson_contact_area(1e3, 1e8)
-    assert relative_contact_area(1e3, 1e8, 1 - 1e-12) == pytest.approx(
+        assert np.isnan(relative_contact_area(1.0, 1.0, area_correction=gamma))
+    assert relative_contact_area(1e3, 1e8, area_correction=1.0) == persson_contact_area(1e3, 1e8)
+    assert relative_contact_area(1e3, 1e8, area_correction=1 - 1e-12) == pytest.approx(
         persson_contact_area(1e3, 1e8), rel=1e-6
     )
 
 
 def test_edges_of_the_response():
-    skin = LayeredSkin(7e6, 20e3, 0.5, 0.45, 20e-6)
+    skin = LayeredSkin(
+        young_modulus_layer=7e6,
+        young_modulus_bulk=20e3,
+        poisson_ratio_layer=0.5,
+        poisson_ratio_bulk=0.45,
+        layer_thickness=20e-6,
+    )
     ends = effective_modulus(skin, [0.0, np.inf])
     np.testing.assert_allclose(ends, [reduced_modulus(20e3, 0.45), reduced_modulus(7e6, 0.5)], rtol=1e-12)
     assert surface_response(skin, np.inf) == 1.0
     assert np.isnan(surface_response(skin, [-1.0, np.nan])).all()
     assert np.isnan(effective_modulus(skin, -1e-3))
     assert np.isnan(reduced_modulus(1e6, [-1.0, 0.5 + 1e-12])).all()
-    assert stress_variance(named_surface("paper_reference"), skin, 1e3) == 0.0
-    whole = stress_variance(named_surface("paper_reference"), skin)
-    assert stress_variance(named_surface("paper_reference"), skin, 1e9) == pytest.approx(whole, rel=1e-9)
+    assert twice_stress_variance(named_surface("paper_reference"), skin, wavevector=1e3) == 0.0
+    whole = twice_stress_variance(named_surface("paper_reference"), skin)
+    assert twice_stress_variance(named_surface("paper_reference"), skin, wavevector=1e9) == pytest.approx(
+        whole, rel=1e-9
+    )
 
 
 def test_separation_at_its_ends():
-    skin, surface = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
-    assert mean_separation(0.0, surface, skin) == np.inf
-    assert pressure_at_separation(0.0, surface, skin) == np.inf
-    assert pressure_at_separation(np.inf, surface, skin) == 0.0
-    assert mean_separation(1e300, surface, skin) == 0.0
-    assert np.isnan(mean_separation([-1.0, np.nan], surface, skin)).all()
-    assert np.isnan(pressure_at_separation([-1.0, np.nan], surface, skin)).all()
-    gaps = gap_distribution(6830.0, surface, skin)
+    skin, surface = (
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
+        named_surface("paper_reference"),
+    )
+    assert mean_separation(0.0, surface, skin=skin) == np.inf
+    assert pressure_at_separation(0.0, surface, skin=skin) == np.inf
+    assert pressure_at_separation(np.inf, surface, skin=skin) == 0.0
+    assert mean_separation(1e300, surface, skin=skin) == 0.0
+    assert np.isnan(mean_separation([-1.0, np.nan], surface, skin=skin)).all()
+    assert np.isnan(pressure_at_separation([-1.0, np.nan], surface, skin=skin)).all()
+    gaps = gap_distribution(6830.0, surface, skin=skin)
     assert gaps.cumulative(0.0) == pytest.approx(gaps.contact_fraction, rel=1e-12) and gaps.film(0.0) == 0.0
-    assert np.isnan(gap_distribution(0.0, surface, skin).mean)
+    assert np.isnan(gap_distribution(0.0, surface, skin=skin).mean)
 
 
 def test_hertz_at_its_ends():
-    assert tuple(sphere_contact(0.0, 8e-3, 2e4)) == (0.0, 0.0, 0.0, 0.0)
-    assert tuple(line_contact(0.0, 8e-3, 2e4)) == (0.0, 0.0, 0.0)
-    assert np.isnan(cylinder_of_sphere(0.0, 8e-3, 2e4).cylinder_radius)
+    assert tuple(sphere_contact(0.0, 8e-3, reduced_modulus=2e4)) == (0.0, 0.0, 0.0, 0.0)
+    assert tuple(line_contact(0.0, 8e-3, reduced_modulus=2e4)) == (0.0, 0.0, 0.0)
+    assert np.isnan(cylinder_of_sphere(0.0, 8e-3, reduced_modulus=2e4).cylinder_radius)
     round_, nearly = (
-        elliptic_contact(0.2, 8e-3, [8e-3, 8e-3 * (1 + 1e-9)], 2e4),
-        sphere_contact(0.2, 8e-3, 2e4),
+        elliptic_contact(0.2, 8e-3, radius_across=[8e-3, 8e-3 * (1 + 1e-9)], reduced_modulus=2e4),
+        sphere_contact(0.2, 8e-3, reduced_modulus=2e4),
     )
     np.testing.assert_allclose(round_.semi_axis_along, nearly.contact_radius, rtol=1e-8)
     np.testing.assert_allclose(round_.mean_pressure, nearly.mean_pressure, rtol=1e-8)
-    circle = cylinder_of_ellipse(0.2, 8e-3, 8e-3, 2e4)
-    sphere = cylinder_of_sphere(0.2, 8e-3, 2e4)
+    circle = cylinder_of_ellipse(0.2, 8e-3, radius_across=8e-3, reduced_modulus=2e4)
+    sphere = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=2e4)
     np.testing.assert_allclose(circle, sphere, rtol=1e-12)
     factors = ellipse_factors([1 - 1e-15, 1.0, 1 + 1e-15, 1 + 1e-9])
     np.testing.assert_allclose(factors, 1.0, rtol=2e-9)
@@ -234,16 +248,17 @@ def test_true_area_at_its_ends():
 
 def test_empty_batches_are_empty():
     none = np.empty(0)
-    surface, skin = named_surface("paper_reference"), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
-    no_surface = SelfAffineSpectrum(none, 0.78, 1e3, 1e3, 1e9)
-    no_skin = LayeredSkin(none, 20e3, 0.5, 0.5, 20e-6)
-    for body in ((no_surface, skin), (surface, no_skin)):
-        assert stress_variance(*body).shape == (0,)
-        assert mean_separation(6830.0, *body).shape == (0,)
-        assert pressure_at_separation(1e-5, *body).shape == (0,)
-        assert gap_distribution(6830.0, *body).mean.shape == (0,)
-        assert mean_separation(none, *body).shape == (0, 0)
-    assert mean_separation(none, surface, skin).shape == (0,)
-    assert gap_distribution(none, surface, skin).cumulative(1e-6).shape == (0,)
+    surface = named_surface("paper_reference")
+    skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    no_surface = surface_from((none, 0.78, 1e3, 1e3, 1e9))
+    no_skin = LayeredSkin(young_modulus_layer=none, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    for rough, body in ((no_surface, skin), (surface, no_skin)):
+        assert twice_stress_variance(rough, body).shape == (0,)
+        assert mean_separation(6830.0, rough, skin=body).shape == (0,)
+        assert pressure_at_separation(1e-5, rough, skin=body).shape == (0,)
+        assert gap_distribution(6830.0, rough, skin=body).mean.shape == (0,)
+        assert mean_separation(none, rough, skin=body).shape == (0, 0)
+    assert mean_separation(none, surface, skin=skin).shape == (0,)
+    assert gap_distribution(none, surface, skin=skin).cumulative(1e-6).shape == (0,)
     assert relative_contact_area(none, 1e14).shape == (0,)
-    assert total_contact_area(1e3, 1e14, none).shape == (0,)
+    assert total_contact_area(1e3, 1e14, yield_stress=none).shape == (0,)

@@ -4,15 +4,16 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 
 from skinbayes.contact import (
     LayeredSkin,
     gap_distribution,
     mean_separation,
     relative_contact_area,
-    stress_variance,
+    twice_stress_variance,
 )
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import named_surface
 from skinbayes.wetting import (
     capillary_state,
     capillary_state_at_gap,
@@ -31,7 +32,7 @@ from skinbayes.wetting import (
 )
 
 SURFACE = named_surface("paper_reference")
-SOFT = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+SOFT = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 LOAD, ROOM, ANGLE = 6830.0, 293.15, np.radians(80.0)
 WATER = (
     surface_tension_of_water,
@@ -43,7 +44,16 @@ WATER = (
 
 
 def in_air(humidity, skin=SOFT, angle=ANGLE, surface=SURFACE, load=LOAD, other=0.0):
-    return capillary_state_in_humid_air(humidity, ROOM, load, surface, skin, angle, other, count=False)
+    return capillary_state_in_humid_air(
+        humidity,
+        ROOM,
+        nominal_pressure=load,
+        spectrum=surface,
+        skin=skin,
+        contact_angle_skin=angle,
+        contact_angle_counterface=other,
+        count=False,
+    )
 
 
 def skin_samples(count, seed):
@@ -53,15 +63,21 @@ def skin_samples(count, seed):
         return np.exp(rng.uniform(np.log(low), np.log(high), count))
 
     first = between(3e2, 5e3)
-    surface = SelfAffineSpectrum(
-        between(5e-6, 5e-5),
-        rng.uniform(0.6, 1.0, count),
-        first,
-        first * between(1.0, 10.0),
-        between(1e8, 1e9),
+    surface = surface_from(
+        (
+            between(5e-6, 5e-5),
+            rng.uniform(0.6, 1.0, count),
+            first,
+            first * between(1.0, 10.0),
+            between(1e8, 1e9),
+        )
     )
     bulk = between(1e4, 1e5)
-    skin = LayeredSkin(bulk * between(10.0, 1e5), bulk, 0.5, 0.5, between(1e-5, 4e-5))
+    skin = LayeredSkin(
+        young_modulus_layer=bulk * between(10.0, 1e5),
+        young_modulus_bulk=bulk,
+        layer_thickness=between(1e-5, 4e-5),
+    )
     return surface, skin, between(2e3, 5e4), rng.uniform(0.5, np.pi, count), rng.uniform(0.0, 0.7, count)
 
 
@@ -77,12 +93,30 @@ def test_water_from_freezing_to_the_critical_point(property_of_water):
 def test_saturated_air_is_the_limit_of_humid_air():
     surface, skin, load, first, second = skin_samples(12, 3)
     distance = np.array([1e-6, 1e-9, 1e-12])
-    state = capillary_state_in_humid_air(1 - distance, ROOM, load, surface, skin, first, second, count=False)
-    end = capillary_state_in_humid_air(1.0, ROOM, load, surface, skin, first, second, count=False)
+    state = capillary_state_in_humid_air(
+        1 - distance,
+        ROOM,
+        nominal_pressure=load,
+        spectrum=surface,
+        skin=skin,
+        contact_angle_skin=first,
+        contact_angle_counterface=second,
+        count=False,
+    )
+    end = capillary_state_in_humid_air(
+        1.0,
+        ROOM,
+        nominal_pressure=load,
+        spectrum=surface,
+        skin=skin,
+        contact_angle_skin=first,
+        contact_angle_counterface=second,
+        count=False,
+    )
     # far from all gaps the whole area is wet: the pull is the Laplace pressure k_B T (1 − RH)/v, 135 MPa times the distance
     wetting = np.cos(first) + np.cos(second) > 0
     assert 3 < wetting.sum() < 12
-    dry = relative_contact_area(load, stress_variance(surface, skin))
+    dry = relative_contact_area(load, twice_stress_variance(surface, skin))
     np.testing.assert_allclose(
         state.capillary_pressure[wetting, -1], 135e6 * 1e-12 * (1 - dry[wetting]), rtol=0.01
     )
@@ -90,21 +124,21 @@ def test_saturated_air_is_the_limit_of_humid_air():
     np.testing.assert_array_equal(state.capillary_pressure[~wetting], 0.0)
     np.testing.assert_allclose(end.relative_contact_area, dry, rtol=1e-12)
     np.testing.assert_allclose(state.relative_contact_area[:, -1], dry, rtol=1e-6)
-    separation = mean_separation(load[:, None], surface, skin)[:, 0]
+    separation = mean_separation(load[:, None], surface, skin=skin)[:, 0]
     np.testing.assert_allclose(end.film_thickness[wetting], separation[wetting], rtol=1e-12)
     np.testing.assert_allclose(state.film_thickness[wetting, -1], separation[wetting], rtol=1e-4)
     np.testing.assert_array_equal(end.flooded, wetting)
 
 
 def test_dry_air_is_the_limit_of_dry_air():
-    for skin in (SOFT, LayeredSkin(1e9, 20e3, 0.5, 0.5, 20e-6)):
+    for skin in (SOFT, LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)):
         pulls = in_air([1e-300, 1e-30, 0.0], skin).capillary_pressure
         assert pulls[2] > 0
         np.testing.assert_allclose(pulls[:2], pulls[2], rtol=2e-3)
         assert pulls[2] == pytest.approx(in_air(0.0, skin).capillary_pressure, rel=1e-12)
         # γ_w Σcos P(u → 0; p), with the density of gaps at 0 from the public distribution
         state = in_air(0.0, skin)
-        gaps = gap_distribution(state.total_pressure, SURFACE, skin)
+        gaps = gap_distribution(state.total_pressure, SURFACE, skin=skin)
         small = 1e-11
         density = (gaps.cumulative(small) - gaps.contact_fraction) / small
         expected = surface_tension_of_water(ROOM) * (np.cos(ANGLE) + 1) * density
@@ -116,7 +150,16 @@ def test_dry_air_is_the_limit_of_dry_air():
 
 def test_gaps_below_a_picometre_keep_their_digits():
     gaps = np.array([1e-300, 1e-20, 1e-16, 1e-14, 1e-13, 1e-12])
-    state = capillary_state_at_gap(gaps, LOAD, SURFACE, SOFT, 0.0727, ANGLE, 0.0, count=False)
+    state = capillary_state_at_gap(
+        gaps,
+        LOAD,
+        spectrum=SURFACE,
+        skin=SOFT,
+        surface_tension=0.0727,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+        count=False,
+    )
     np.testing.assert_allclose(state.capillary_pressure, state.capillary_pressure[-1], rtol=1e-3)
     np.testing.assert_allclose(state.wet_area / gaps, state.wet_area[-1] / gaps[-1], rtol=1e-3)
     np.testing.assert_allclose(state.mean_separation_wet, gaps / 2, rtol=1e-3)
@@ -130,50 +173,126 @@ def test_no_bridges_means_no_water():
         assert state.total_pressure == LOAD
     # two cosines that cancel but for rounding
     for first, second in ((90, 90), (80, 100), (0, 180), (180, 0), (60, 120)):
-        assert kelvin_gap(np.inf, np.radians(first), np.radians(second)) == 0.0
-    assert kelvin_gap(np.inf, 0.0, 0.0) == np.inf and kelvin_gap(0.0, 0.0, 0.0) == 0.0
-    assert np.isnan(kelvin_gap(1e-9, [-1e-9, np.pi + 1e-9, np.nan], 0.0)).all()
+        assert kelvin_gap(np.inf, np.radians(first), contact_angle_counterface=np.radians(second)) == 0.0
+    assert (
+        kelvin_gap(np.inf, 0.0, contact_angle_counterface=0.0) == np.inf
+        and kelvin_gap(0.0, 0.0, contact_angle_counterface=0.0) == 0.0
+    )
+    assert np.isnan(kelvin_gap(1e-9, [-1e-9, np.pi + 1e-9, np.nan], contact_angle_counterface=0.0)).all()
     np.testing.assert_array_equal(is_below_molecule([0.0, np.inf]), [1.0, 0.0])
     assert np.isnan(is_below_molecule([-1e-9, np.nan])).all()
 
 
 def test_films_at_their_ends():
-    flooded = float(mean_separation(LOAD, SURFACE, SOFT))
+    flooded = float(mean_separation(LOAD, SURFACE, skin=SOFT))
     state = capillary_state(
-        [flooded * (1 - 1e-9), flooded, 1e-3, np.inf], LOAD, SURFACE, SOFT, 0.0727, ANGLE, 0.0, refine=False
+        [flooded * (1 - 1e-9), flooded, 1e-3, np.inf],
+        LOAD,
+        spectrum=SURFACE,
+        skin=SOFT,
+        surface_tension=0.0727,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+        refine=False,
     )
     np.testing.assert_array_equal(state.flooded, [0, 1, 1, 1])
     assert state.capillary_pressure[0] < 1e-3 * LOAD
     for refine in (True, False):
         impossible = capillary_state(
-            [0.0, -1e-6, np.nan], LOAD, SURFACE, SOFT, 0.0727, ANGLE, 0.0, refine=refine
+            [0.0, -1e-6, np.nan],
+            LOAD,
+            spectrum=SURFACE,
+            skin=SOFT,
+            surface_tension=0.0727,
+            contact_angle_skin=ANGLE,
+            contact_angle_counterface=0.0,
+            refine=refine,
         )
         assert all(np.isnan(getattr(impossible, field.name)).all() for field in fields(impossible))
     # a film that the interpolated curve does not reach has no number, rather than that of another film
-    thin = capillary_state([1e-12, 1e-6], LOAD, SURFACE, SOFT, 0.0727, ANGLE, 0.0, refine=False)
+    thin = capillary_state(
+        [1e-12, 1e-6],
+        LOAD,
+        spectrum=SURFACE,
+        skin=SOFT,
+        surface_tension=0.0727,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+        refine=False,
+    )
     assert all(np.isnan(getattr(thin, field.name)[0]) for field in fields(thin))
     assert np.isfinite(thin.capillary_pressure[1])
     for tension in (np.inf, -1.0, np.nan):
-        assert np.isnan(capillary_state_at_gap(1e-6, LOAD, SURFACE, SOFT, tension, ANGLE, 0.0).total_pressure)
-    none = capillary_state_at_gap(1e-6, LOAD, SURFACE, SOFT, 0.0, ANGLE, 0.0)
+        assert np.isnan(
+            capillary_state_at_gap(
+                1e-6,
+                LOAD,
+                spectrum=SURFACE,
+                skin=SOFT,
+                surface_tension=tension,
+                contact_angle_skin=ANGLE,
+                contact_angle_counterface=0.0,
+            ).total_pressure
+        )
+    none = capillary_state_at_gap(
+        1e-6,
+        LOAD,
+        spectrum=SURFACE,
+        skin=SOFT,
+        surface_tension=0.0,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+    )
     assert none.capillary_pressure == 0.0 and none.wet_area > 0
 
 
 def test_empty_batches_are_empty():
     none = np.empty(0)
-    nobody = LayeredSkin(none, 20e3, 0.5, 0.5, 20e-6)
+    nobody = LayeredSkin(young_modulus_layer=none, young_modulus_bulk=20e3, layer_thickness=20e-6)
     assert in_air(none).wet_area.shape == (0,)
     assert in_air(0.5, nobody).wet_area.shape == (0,)
-    assert capillary_state(none, LOAD, SURFACE, SOFT, 0.07, ANGLE, 0.0).film_thickness.shape == (0,)
-    assert capillary_state(1e-6, LOAD, SURFACE, nobody, 0.07, ANGLE, 0.0).film_thickness.shape == (0,)
-    assert capillary_state_at_gap(none, LOAD, SURFACE, SOFT, 0.07, ANGLE, 0.0).wet_area.shape == (0,)
+    assert capillary_state(
+        none,
+        LOAD,
+        spectrum=SURFACE,
+        skin=SOFT,
+        surface_tension=0.07,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+    ).film_thickness.shape == (0,)
+    assert capillary_state(
+        1e-6,
+        LOAD,
+        spectrum=SURFACE,
+        skin=nobody,
+        surface_tension=0.07,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+    ).film_thickness.shape == (0,)
+    assert capillary_state_at_gap(
+        none,
+        LOAD,
+        spectrum=SURFACE,
+        skin=SOFT,
+        surface_tension=0.07,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+    ).wet_area.shape == (0,)
 
 
 def test_modulus_at_the_ends_of_humidity():
     np.testing.assert_allclose(
-        young_modulus_at_humidity([0.0, 1.0], 1e9, 7e6, 0.7, 1.5), [1e9, 7e6], rtol=1e-12
+        young_modulus_at_humidity(
+            [0.0, 1.0], 1e9, young_modulus_wet=7e6, transition_humidity=0.7, sharpness=1.5
+        ),
+        [1e9, 7e6],
+        rtol=1e-12,
     )
-    assert np.isnan(young_modulus_at_humidity([-1e-9, 1 + 1e-12, np.nan], 1e9, 7e6, 0.7, 1.5)).all()
+    assert np.isnan(
+        young_modulus_at_humidity(
+            [-1e-9, 1 + 1e-12, np.nan], 1e9, young_modulus_wet=7e6, transition_humidity=0.7, sharpness=1.5
+        )
+    ).all()
 
 
 def test_humidity_at_warm_skin():
@@ -181,14 +300,33 @@ def test_humidity_at_warm_skin():
     table = {20.0: 2.339, 25.0: 3.169, 30.0: 4.246, 32.0: 4.759, 35.0: 5.628}
     for air in (20.0, 25.0):
         for surface, pressure in table.items():
-            found = humidity_at_surface(0.5, air + 273.15, surface + 273.15)
+            found = humidity_at_surface(
+                relative_humidity=0.5, air_temperature=air + 273.15, surface_temperature=surface + 273.15
+            )
             assert found == pytest.approx(min(0.5 * table[air] / pressure, 1.0), rel=1e-3)
-    assert humidity_at_surface(0.37, 301.0, 301.0) == 0.37
-    assert humidity_at_surface(0.0, 293.0, 305.0) == 0.0
-    np.testing.assert_array_equal(humidity_at_surface([0.9, 1.0], 293.15, 288.15), 1.0)
-    assert np.isnan(humidity_at_surface([-0.1, 1.1, np.nan], 293.15, 305.15)).all()
-    assert np.isnan(humidity_at_surface(0.5, [273.0, 293.15], [293.15, 273.0])).all()
+    assert (
+        humidity_at_surface(relative_humidity=0.37, air_temperature=301.0, surface_temperature=301.0) == 0.37
+    )
+    assert humidity_at_surface(relative_humidity=0.0, air_temperature=293.0, surface_temperature=305.0) == 0.0
+    np.testing.assert_array_equal(
+        humidity_at_surface(relative_humidity=[0.9, 1.0], air_temperature=293.15, surface_temperature=288.15),
+        1.0,
+    )
+    assert np.isnan(
+        humidity_at_surface(
+            relative_humidity=[-0.1, 1.1, np.nan], air_temperature=293.15, surface_temperature=305.15
+        )
+    ).all()
+    assert np.isnan(
+        humidity_at_surface(
+            relative_humidity=0.5, air_temperature=[273.0, 293.15], surface_temperature=[293.15, 273.0]
+        )
+    ).all()
     # what evaporates is driven by the same pressures: none where the skin sees saturated air
     humidity = float(saturation_vapour_pressure(298.15) / saturation_vapour_pressure(303.15))
-    assert humidity_at_surface(1.0, 298.15, 303.15) == pytest.approx(humidity, rel=1e-12)
-    assert evaporation_rate(298.15, 303.15, humidity) == pytest.approx(0.0, abs=1e-20)
+    assert humidity_at_surface(
+        relative_humidity=1.0, air_temperature=298.15, surface_temperature=303.15
+    ) == pytest.approx(humidity, rel=1e-12)
+    assert evaporation_rate(
+        surface_temperature=298.15, air_temperature=303.15, relative_humidity=humidity
+    ) == pytest.approx(0.0, abs=1e-20)

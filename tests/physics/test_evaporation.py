@@ -63,22 +63,26 @@ def test_numbers_of_the_paper():
     assert evaporation_rate_from_pressures(5.6e3, 1.15e3) == pytest.approx(1.7432e-7, rel=1e-4)
     assert saturation_vapour_pressure(308.15) == pytest.approx(5.6e3, rel=0.01)
     assert 0.5 * saturation_vapour_pressure(293.15) == pytest.approx(1.15e3, rel=0.02)
-    assert evaporation_rate(308.15, 293.15, 0.5) == pytest.approx(1.7e-7, rel=0.03)
-    assert film_of_droplet(50e-9, 0.08, 0.008) == pytest.approx(78.125e-6, rel=1e-12)
+    assert evaporation_rate(
+        surface_temperature=308.15, air_temperature=293.15, relative_humidity=0.5
+    ) == pytest.approx(1.7e-7, rel=0.03)
+    assert film_of_droplet(50e-9, 0.08, contact_width=0.008) == pytest.approx(78.125e-6, rel=1e-12)
 
 
 def test_rate_is_the_ashrae_heat_flow():
     # 0.089 + 0.0782 v in W/(m² Pa), over the latent heat of a volume of water of 1000 kg/m³
     pressure, speed = 3000.0, 1.5
     heat_flow = pressure * (0.089 + 0.0782 * speed)
-    rate = evaporation_rate_from_pressures(pressure, 0.0, speed)
+    rate = evaporation_rate_from_pressures(pressure, 0.0, air_speed=speed)
     assert rate == pytest.approx(heat_flow / (1000 * LATENT_HEAT_OF_PAPER), rel=3e-3)
 
 
 def test_condensation_and_balance():
-    assert evaporation_rate(293.15, 293.15, 1.0) == 0
-    assert evaporation_rate(283.15, 303.15, 0.9) < 0
-    rates = evaporation_rate(308.15, 293.15, np.linspace(0, 1, 11))
+    assert evaporation_rate(surface_temperature=293.15, air_temperature=293.15, relative_humidity=1.0) == 0
+    assert evaporation_rate(surface_temperature=283.15, air_temperature=303.15, relative_humidity=0.9) < 0
+    rates = evaporation_rate(
+        surface_temperature=308.15, air_temperature=293.15, relative_humidity=np.linspace(0, 1, 11)
+    )
     assert np.all(np.diff(rates) < 0)
     np.testing.assert_allclose(np.diff(rates, 2), 0, atol=1e-20)
 
@@ -87,20 +91,46 @@ def test_shapes_and_batches_agree_with_rows_to_the_last_bit():
     surface = np.array([[300.0], [308.15], [311.0]])
     humidity = np.array([0.1, 0.5, 0.97])
     heat = latent_heat_of_evaporation(surface)
-    batch = evaporation_rate(surface, 293.15, humidity, 0.3, heat)
+    batch = evaporation_rate(
+        surface_temperature=surface,
+        air_temperature=293.15,
+        relative_humidity=humidity,
+        air_speed=0.3,
+        latent_heat=heat,
+    )
     assert batch.shape == (3, 3)
     for i in range(3):
         for j in range(3):
             kelvin = float(surface[i, 0])
             one = evaporation_rate(
-                kelvin, 293.15, float(humidity[j]), 0.3, latent_heat_of_evaporation(kelvin)
+                surface_temperature=kelvin,
+                air_temperature=293.15,
+                relative_humidity=float(humidity[j]),
+                air_speed=0.3,
+                latent_heat=latent_heat_of_evaporation(kelvin),
             )
             assert one == batch[i, j]
 
 
 def test_impossible_arguments_give_nan():
     assert np.isnan(saturation_vapour_pressure([270.0, 647.2, np.nan, -1.0])).all()
-    assert np.isnan(evaporation_rate(308.15, 293.15, [1.2, -0.1])).all()
-    assert np.isnan(evaporation_rate(308.15, 293.15, 0.5, -1.0))
-    assert np.isnan(evaporation_rate(308.15, 293.15, 0.5, 0.0, 0.0))
-    assert np.isnan(film_of_droplet([-1e-9, 1e-9, 1e-9], [0.1, 0.0, 0.1], [0.1, 0.1, -0.1])).all()
+    assert np.isnan(
+        evaporation_rate(surface_temperature=308.15, air_temperature=293.15, relative_humidity=[1.2, -0.1])
+    ).all()
+    assert np.isnan(
+        evaporation_rate(
+            surface_temperature=308.15, air_temperature=293.15, relative_humidity=0.5, air_speed=-1.0
+        )
+    )
+    assert np.isnan(
+        evaporation_rate(
+            surface_temperature=308.15,
+            air_temperature=293.15,
+            relative_humidity=0.5,
+            air_speed=0.0,
+            latent_heat=0.0,
+        )
+    )
+    assert np.isnan(
+        film_of_droplet([-1e-9, 1e-9, 1e-9], [0.1, 0.0, 0.1], contact_width=[0.1, 0.1, -0.1])
+    ).all()

@@ -69,8 +69,22 @@ def test_a_newtonian_flow_curve_is_a_plain_viscosity():
     rows = liquid_rows([FlowCurve([1.0, 1e4], [0.3, 0.3])] * 12)
     speeds = np.geomspace(1e-4, 0.3, 12)
     parameters = draw(np.random.default_rng(1), 5)
-    found, viscosity = tabulated_friction_of_liquids(small_table(), speeds, rows, parameters, STRESS, 2.0)
-    wanted = tabulated_friction(small_table(), 0.3 * speeds, parameters, STRESS, 2.0, everything=True)
+    found, viscosity = tabulated_friction_of_liquids(
+        small_table(),
+        speeds,
+        liquids=rows,
+        parameters=parameters,
+        frictional_shear_stress=STRESS,
+        velocity_shift_factor=2.0,
+    )
+    wanted = tabulated_friction(
+        small_table(),
+        0.3 * speeds,
+        parameters=parameters,
+        frictional_shear_stress=STRESS,
+        velocity_shift_factor=2.0,
+        everything=True,
+    )
     np.testing.assert_allclose(found.friction_coefficient, wanted.friction_coefficient, rtol=1e-12)
     np.testing.assert_allclose(viscosity.viscosity, 0.3, rtol=1e-12)
     # the shear rate is that of the speed itself, the film that of the shifted one
@@ -83,7 +97,13 @@ def test_viscosity_agrees_with_its_film():
     speeds = np.exp(np.random.default_rng(2).uniform(np.log(1e-3), np.log(0.3), len(names)))
     parameters = draw(np.random.default_rng(3), 200, len(names))
     found, viscosity = tabulated_friction_of_liquids(
-        small_table(), speeds, rows_of(names), parameters, STRESS, 1.5, everything=True
+        small_table(),
+        speeds,
+        liquids=rows_of(names),
+        parameters=parameters,
+        frictional_shear_stress=STRESS,
+        velocity_shift_factor=1.5,
+        everything=True,
     )
     good = np.isfinite(found.friction_coefficient)
     assert good.mean() > 0.9
@@ -97,7 +117,13 @@ def test_viscosity_agrees_with_its_film():
         assert np.array_equal(
             viscosity.unmeasured[:, column] & keep, keep & ~curve.measured_at(rate[:, column])
         )
-    plain = tabulated_friction(small_table(), viscosity.viscosity * speeds, parameters, STRESS, 1.5)
+    plain = tabulated_friction(
+        small_table(),
+        viscosity.viscosity * speeds,
+        parameters=parameters,
+        frictional_shear_stress=STRESS,
+        velocity_shift_factor=1.5,
+    )
     np.testing.assert_allclose(found.friction_coefficient[good], plain.friction_coefficient[good], rtol=1e-9)
 
 
@@ -109,7 +135,9 @@ def test_viscosity_against_a_plain_root_finder(name):
     parameters = draw(rng, 4)
     speeds = np.exp(rng.uniform(np.log(1e-3), np.log(0.3), 3))
     rows = liquid_rows([curve] * 3)
-    found = tabulated_friction_of_liquids(table, speeds, rows, parameters, STRESS)[1].viscosity
+    found = tabulated_friction_of_liquids(
+        table, speeds, liquids=rows, parameters=parameters, frictional_shear_stress=STRESS
+    )[1].viscosity
 
     for vector in range(4):
         one = {key: float(value[vector, 0]) for key, value in parameters.items()}
@@ -118,7 +146,13 @@ def test_viscosity_against_a_plain_root_finder(name):
                 continue
 
             def miss(log_viscosity, one=one, speed=speed):
-                film = tabulated_friction(table, np.exp(log_viscosity) * speed, one, STRESS, everything=True)
+                film = tabulated_friction(
+                    table,
+                    np.exp(log_viscosity) * speed,
+                    parameters=one,
+                    frictional_shear_stress=STRESS,
+                    everything=True,
+                )
                 rate = np.clip(speed / film.central_film, low * (1 + 1e-12), high * (1 - 1e-12))
                 return np.log(curve.viscosity(rate)) - log_viscosity
 
@@ -135,12 +169,16 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
     rows, speeds = rows_of(names), np.exp(rng.uniform(np.log(1e-3), np.log(0.3), len(names)))
     parameters = draw(rng, 120)
     parameters["normal_force"] = np.exp(rng.uniform(np.log(0.2), np.log(0.6), (1, len(names))))
-    batch = tabulated_friction_of_liquids(small_table(), speeds, rows, parameters, STRESS)
+    batch = tabulated_friction_of_liquids(
+        small_table(), speeds, liquids=rows, parameters=parameters, frictional_shear_stress=STRESS
+    )
     for place in (0, 48, 49, 119):
         one = {
             name: value[place : place + 1] if len(value) > 1 else value for name, value in parameters.items()
         }
-        single = tabulated_friction_of_liquids(small_table(), speeds, rows, one, STRESS)
+        single = tabulated_friction_of_liquids(
+            small_table(), speeds, liquids=rows, parameters=one, frictional_shear_stress=STRESS
+        )
         for whole, part in zip((*batch[0], *batch[1]), (*single[0], *single[1]), strict=True):
             assert np.array_equal(whole[place], part[0], equal_nan=True)
 
@@ -148,7 +186,13 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
 def test_wrong_number_of_rows_is_named():
     parameters = draw(np.random.default_rng(6), 1)
     with pytest.raises(InputError, match="for 2 rows, but the arguments have 3 rows"):
-        tabulated_friction_of_liquids(small_table(), [1e-3] * 3, rows_of(["honey"] * 2), parameters, STRESS)
+        tabulated_friction_of_liquids(
+            small_table(),
+            [1e-3] * 3,
+            liquids=rows_of(["honey"] * 2),
+            parameters=parameters,
+            frictional_shear_stress=STRESS,
+        )
 
 
 def test_direct_solution_agrees_with_its_film_and_with_the_table():
@@ -166,7 +210,9 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
             nodes=120,
         )
         modulus = float(reduced_modulus(parameters["young_modulus_bulk"], 0.5))
-        radius, load = cylinder_of_sphere(parameters["normal_force"], parameters["sphere_radius"], modulus)
+        load, radius = cylinder_of_sphere(
+            parameters["normal_force"], parameters["sphere_radius"], reduced_modulus=modulus
+        )
         law = asperity_law(spectrum_of(parameters), skin_of(parameters))
         good = np.isfinite(viscosity.viscosity)
         films = lubricated_films(
@@ -181,7 +227,11 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
         expected = CURVES[name].viscosity(np.clip(speeds[good] / films.central_film, low, high))
         np.testing.assert_allclose(viscosity.viscosity[good], expected, rtol=2e-3)
         found, tabulated = tabulated_friction_of_liquids(
-            small_table(), speeds, liquid_rows([CURVES[name]] * 6), parameters, STRESS
+            small_table(),
+            speeds,
+            liquids=liquid_rows([CURVES[name]] * 6),
+            parameters=parameters,
+            frictional_shear_stress=STRESS,
         )
         np.testing.assert_allclose(found.friction_coefficient, curve.friction_coefficient, rtol=7e-3)
         np.testing.assert_allclose(tabulated.viscosity, viscosity.viscosity, rtol=7e-3)

@@ -49,7 +49,9 @@ def vector(parameters, place):
 
 def test_table_against_direct_solutions():
     parameters = draw(np.random.default_rng(1), 4)
-    found = tabulated_friction(small_table(), PRODUCTS, parameters, SHEAR_STRESS, everything=True)
+    found = tabulated_friction(
+        small_table(), PRODUCTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True
+    )
     for place in range(4):
         wanted = direct(vector(parameters, place), PRODUCTS)
         valid = wanted.valid
@@ -66,7 +68,9 @@ def test_table_against_direct_solutions():
 def test_beyond_both_ends_of_the_speeds_against_direct_solutions():
     parameters = vector(draw(np.random.default_rng(2), 1), 0)
     products = np.array([1e-9, 1e-8, 1e-7, 0.1, 0.5])
-    found = tabulated_friction(small_table(), products, parameters, SHEAR_STRESS, everything=True)
+    found = tabulated_friction(
+        small_table(), products, parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True
+    )
     wanted = direct(parameters, products, nodes=300)
     for name in ("couette", "pressure_flow", "central_film"):
         keep = wanted.valid
@@ -94,7 +98,9 @@ def test_similar_balls_are_the_same_entry_and_the_same_curve():
     of_similar = products / ratio**3
     wanted = direct(parameters, products)
     solved = direct(similar, of_similar)
-    tabulated = tabulated_friction(table, of_similar, similar, SHEAR_STRESS)
+    tabulated = tabulated_friction(
+        table, of_similar, parameters=similar, frictional_shear_stress=SHEAR_STRESS
+    )
     for curve, tolerance in ((solved, 1e-5), (tabulated, 6e-3)):
         # E0 h is smaller by the ratio and so are V^(1/2) and p_H
         assert np.all(np.abs(curve.boundary - ratio * wanted.boundary) < tolerance * (wanted.boundary + 1e-2))
@@ -107,11 +113,23 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
     for rows in (0, 30):
         parameters = draw(rng, 700, rows)
         stress, shift = rng.uniform(1e6, 2e7, (700, 1)), rng.uniform(0.5, 20.0, (700, 1))
-        batch = tabulated_friction(small_table(), PRODUCTS, parameters, stress, shift, everything=True)
+        batch = tabulated_friction(
+            small_table(),
+            PRODUCTS,
+            parameters=parameters,
+            frictional_shear_stress=stress,
+            velocity_shift_factor=shift,
+            everything=True,
+        )
         for place in (0, 1, 272, 273, 699):
             one = {name: value[place : place + 1] for name, value in parameters.items()}
             single = tabulated_friction(
-                small_table(), PRODUCTS, one, stress[place], shift[place], everything=True
+                small_table(),
+                PRODUCTS,
+                parameters=one,
+                frictional_shear_stress=stress[place],
+                velocity_shift_factor=shift[place],
+                everything=True,
             )
             for whole, part in zip(batch, single, strict=True):
                 assert np.array_equal(whole[place], part[0], equal_nan=True)
@@ -121,7 +139,13 @@ def test_curve_and_its_slope_are_continuous():
     """Second differences stay small everywhere: over cells, and over both ends of the tabulated speeds."""
     parameters = vector(draw(np.random.default_rng(5), 1), 0)
     log_product = np.linspace(np.log(1e-8), np.log(0.2), 20001)
-    found = tabulated_friction(small_table(), np.exp(log_product), parameters, SHEAR_STRESS, everything=True)
+    found = tabulated_friction(
+        small_table(),
+        np.exp(log_product),
+        parameters=parameters,
+        frictional_shear_stress=SHEAR_STRESS,
+        everything=True,
+    )
     step = log_product[1] - log_product[0]
     for name in ("friction_coefficient", "couette", "pressure_flow", "central_film"):
         curve = np.log(getattr(found, name))
@@ -135,7 +159,10 @@ def test_curve_and_its_slope_are_continuous():
     # and along the axes
     moduli = np.exp(np.linspace(*np.log(RANGES["young_modulus_bulk"]), 2001))[1:-1]
     along = tabulated_friction(
-        small_table(), 3e-3, {**parameters, "young_modulus_bulk": moduli[:, None]}, 1e7
+        small_table(),
+        3e-3,
+        parameters={**parameters, "young_modulus_bulk": moduli[:, None]},
+        frictional_shear_stress=1e7,
     )
     slope = np.diff(np.log(along.friction_coefficient[:, 0]))
     assert np.abs(np.diff(slope)).max() < 1e-4
@@ -144,7 +171,9 @@ def test_curve_and_its_slope_are_continuous():
 def test_outside_is_refused_not_extrapolated():
     table = small_table()
     inside = vector(draw(np.random.default_rng(6), 1), 0)
-    assert not tabulated_friction(table, 1e-3, inside, SHEAR_STRESS).outside_table
+    assert not tabulated_friction(
+        table, 1e-3, parameters=inside, frictional_shear_stress=SHEAR_STRESS
+    ).outside_table
     for name, value in (
         ("young_modulus_bulk", 6.1e4),
         ("rms_height", 14.9e-6),
@@ -158,14 +187,18 @@ def test_outside_is_refused_not_extrapolated():
         changed = {**inside, name: value}
         if name in ("sphere_radius", "young_modulus_layer"):
             changed |= {"rms_height": 24.9e-6, "young_modulus_bulk": 5.99e4, "normal_force": 0.599}
-        found = tabulated_friction(table, 1e-3, changed, SHEAR_STRESS)
+        found = tabulated_friction(table, 1e-3, parameters=changed, frictional_shear_stress=SHEAR_STRESS)
         assert found.outside_table, name
         assert np.isnan(found.friction_coefficient)
         assert not table.contains(**changed)
-    beyond = tabulated_friction(table, 10.0, inside, SHEAR_STRESS)
+    beyond = tabulated_friction(table, 10.0, parameters=inside, frictional_shear_stress=SHEAR_STRESS)
     assert beyond.film_beyond_ball
     assert np.isnan(beyond.friction_coefficient)
-    assert np.isnan(tabulated_friction(table, -1.0, inside, SHEAR_STRESS).friction_coefficient)
+    assert np.isnan(
+        tabulated_friction(
+            table, -1.0, parameters=inside, frictional_shear_stress=SHEAR_STRESS
+        ).friction_coefficient
+    )
 
 
 def test_held_out_errors_are_kept_with_the_table():
@@ -179,9 +212,11 @@ def test_tables_travel():
     arrays, metadata = table.to_arrays()
     again = FilmTable.from_arrays(arrays, json.loads(json.dumps(metadata)))
     parameters = draw(np.random.default_rng(7), 3)
-    wanted = tabulated_friction(table, PRODUCTS, parameters, SHEAR_STRESS)
+    wanted = tabulated_friction(table, PRODUCTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
     for other in (again, pickle.loads(pickle.dumps(table))):
-        found = tabulated_friction(other, PRODUCTS, parameters, SHEAR_STRESS)
+        found = tabulated_friction(
+            other, PRODUCTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+        )
         assert np.array_equal(found.friction_coefficient, wanted.friction_coefficient, equal_nan=True)
     with pytest.raises(InputError, match="version 0"):
         FilmTable.from_arrays(arrays, {**metadata, "version": 0})
@@ -228,7 +263,7 @@ def test_smooth_films_between_and_below_their_points():
     smooth = smooth_films()
     found = smooth(log_number, range(4))
     modulus = 4 / np.pi
-    hertz = line_contact(1.0, 1.0, modulus)
+    hertz = line_contact(1.0, 1.0, reduced_modulus=modulus)
     for place, number in enumerate(np.exp(log_number)):
         films = lubricated_films(
             number / lubrication_number_per_product(1.0, hertz),
@@ -254,7 +289,10 @@ def test_wrong_inputs_are_named():
         build_film_table({**RANGES, "rms_height": (2e-5, 1e-5)}, named_surface("paper_reference"))
     with pytest.raises(InputError, match="missing or unknown: layer_thickness"):
         tabulated_friction(
-            small_table(), 1e-3, {n: v[0] for n, v in RANGES.items() if n != "layer_thickness"}, 1e6
+            small_table(),
+            1e-3,
+            parameters={n: v[0] for n, v in RANGES.items() if n != "layer_thickness"},
+            frictional_shear_stress=1e6,
         )
 
 

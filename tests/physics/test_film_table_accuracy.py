@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from named_fields import skin_from, surface_from
 
 from skinbayes.contact import LayeredSkin
 from skinbayes.lubrication import (
@@ -12,7 +13,7 @@ from skinbayes.lubrication import (
     tabulated_friction,
 )
 from skinbayes.lubrication.film_axes import range_logarithms
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import named_surface
 
 BOX = {
     "young_modulus_layer": (1e6, 30e6),
@@ -26,10 +27,10 @@ BOX = {
 def solve(parameters, product, stress, nodes):
     layer, bulk, height, radius, force, thickness = parameters
     shape = named_surface("paper_reference")
-    surface = SelfAffineSpectrum(
-        height, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max
+    surface = surface_from(
+        (height, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max)
     )
-    skin = LayeredSkin(layer, bulk, 0.5, 0.5, thickness)
+    skin = LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=thickness)
     return stribeck_curve(
         product,
         sphere_radius=radius,
@@ -56,7 +57,7 @@ def test_one_table_for_all_skins_and_balls(thickness):
         product = np.exp(rng.uniform(np.log(1e-6), np.log(10.0)))
         stress = np.exp(rng.uniform(np.log(1e6), np.log(5e7)))
         named = dict(zip(FILM_PARAMETERS, parameters, strict=True))
-        found = tabulated_friction(table, product, named, stress)
+        found = tabulated_friction(table, product, parameters=named, frictional_shear_stress=stress)
         wanted = solve(parameters, [product], stress, nodes=128)
         if np.isfinite(wanted) and found.outside_table:
             refused += 1
@@ -81,18 +82,20 @@ def test_layer_thickness_and_poisson_ratios():
         "layer_thickness": (15e-6, 200e-6),
     }
     shape = named_surface("paper_reference")
-    table = build_film_table(ranges, shape, 0.4, 0.45, 1.0)
+    table = build_film_table(
+        ranges, shape, poisson_ratio_layer=0.4, poisson_ratio_bulk=0.45, area_correction=1.0
+    )
     assert table.axes.names == ("young_modulus_bulk", "layer_thickness")
     rng = np.random.default_rng(5)
-    surface = SelfAffineSpectrum(
-        20e-6, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max
+    surface = surface_from(
+        (20e-6, shape.hurst_exponent, shape.wavevector_min, shape.wavevector_rolloff, shape.wavevector_max)
     )
     products = np.geomspace(1e-5, 0.05, 8)
     for _ in range(12):
         bulk, thickness = np.exp(rng.uniform(np.log([1e4, 15e-6]), np.log([1e5, 200e-6])))
         named = {name: low for name, (low, _) in ranges.items()}
         named |= {"young_modulus_bulk": bulk, "layer_thickness": thickness}
-        skin = LayeredSkin(7e6, bulk, 0.4, 0.45, thickness)
+        skin = skin_from((7e6, bulk, 0.4, 0.45, thickness))
         wanted = stribeck_curve(
             products,
             sphere_radius=8e-3,
@@ -103,7 +106,9 @@ def test_layer_thickness_and_poisson_ratios():
             area_correction=1.0,
             nodes=160,
         ).friction_coefficient
-        found = tabulated_friction(table, products, named, 1e7).friction_coefficient
+        found = tabulated_friction(
+            table, products, parameters=named, frictional_shear_stress=1e7
+        ).friction_coefficient
         np.testing.assert_allclose(found, wanted, rtol=7.5e-3)
 
 
@@ -121,7 +126,7 @@ def test_axes_name_places_and_find_them_again():
     rng = np.random.default_rng(8)
     for _ in range(60):
         ranges = random_ranges(rng)
-        axes = film_axes(ranges, 0.45, 1.3, stress_scale=1.17e5)
+        axes = film_axes(ranges, 0.45, largest_strain=1.3, stress_scale=1.17e5)
         places = rng.uniform(-1, 1, (30, len(axes.names)))
         logs = axes.representative(places)
         fixed = [place for place, name in enumerate(FILM_PARAMETERS) if ranges[name][0] == ranges[name][1]]

@@ -7,15 +7,16 @@ tamaas where tamaas can go, on the plain half-space.
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 from scipy import fft
 
 from skinbayes.contact import LayeredSkin, effective_modulus, gap_distribution, mean_separation
-from skinbayes.roughness import SelfAffineSpectrum, rms_slope
+from skinbayes.roughness import rms_slope
 
 pytestmark = pytest.mark.slow
 
-HALF_SPACE = LayeredSkin(0.75, 0.75, 0.5, 0.5, 0.1)  # E* = 1
-WET = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+HALF_SPACE = LayeredSkin(young_modulus_layer=0.75, young_modulus_bulk=0.75, layer_thickness=0.1)  # E* = 1
+WET = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 SHARES = np.array([0.1, 0.2, 0.35, 0.5, 0.75, 1, 1.25, 1.5, 2, 2.5])
 
 
@@ -79,16 +80,16 @@ def deviations(spectrum, skin, length, n, pressure, seeds):
     mean, shares = found_by_boundary_elements(spectrum, skin, length, n, pressure, seeds)
     off = []
     for closure in ("gaussian", "sharp"):
-        gaps = gap_distribution(pressure, spectrum, skin, closure=closure)
+        gaps = gap_distribution(pressure, spectrum, skin=skin, closure=closure)
         off.append(np.abs(gaps.cumulative(SHARES * gaps.mean) - shares).max())
-    return mean / mean_separation(pressure, spectrum, skin), *off
+    return mean / mean_separation(pressure, spectrum, skin=skin), *off
 
 
 @pytest.mark.parametrize("load", [0.02, 0.2])
 def test_the_solver_agrees_with_tamaas(load):
     tamaas = pytest.importorskip("tamaas")
     n, length = 128, 1.0
-    spectrum = SelfAffineSpectrum(1e-2, 0.8, 4 * 2 * np.pi, 8 * 2 * np.pi, n / 8 * 2 * np.pi)
+    spectrum = surface_from((1e-2, 0.8, 4 * 2 * np.pi, 8 * 2 * np.pi, n / 8 * 2 * np.pi))
     heights, pressure = surface(spectrum, length, n, 0), load * rms_slope(spectrum)
     contact, gap = press(heights, length, HALF_SPACE, pressure, tolerance=1e-7)
     tamaas.set_log_level(tamaas.LogLevel.warning)
@@ -105,7 +106,7 @@ def test_the_solver_agrees_with_tamaas(load):
 def test_half_space(load):
     # measured at n = 1024 with three surfaces: ū 0.938, 0.945, 0.955; F off by 0.022, 0.022, 0.013 (delta 0.20, 0.21, 0.15)
     n, length = 512, 1.0
-    spectrum = SelfAffineSpectrum(1e-2, 0.8, 6 * 2 * np.pi, 12 * 2 * np.pi, n / 8 * 2 * np.pi)
+    spectrum = surface_from((1e-2, 0.8, 6 * 2 * np.pi, 12 * 2 * np.pi, n / 8 * 2 * np.pi))
     mean, gaussian, delta = deviations(spectrum, HALF_SPACE, length, n, load * rms_slope(spectrum), range(3))
     print(f"half-space, p/(E* s) = {load}: mean {mean:.3f}, F {gaussian:.3f}, delta form {delta:.3f}")
     assert 0.9 < mean < 1.0
@@ -117,7 +118,7 @@ def test_half_space(load):
 def test_layered_skin(pressure, low, high):
     # measured with three surfaces: ū 0.976 and 0.883 of the theory, F off by 0.006 and 0.009 (delta 0.15 and 0.14)
     n, length = 1024, 2 * 2 * np.pi / 1e3
-    spectrum = SelfAffineSpectrum(22.4e-6, 0.78, 1e3, 6.345e3, 2 * np.pi / length * n / 4)
+    spectrum = surface_from((22.4e-6, 0.78, 1e3, 6.345e3, 2 * np.pi / length * n / 4))
     mean, gaussian, delta = deviations(spectrum, WET, length, n, pressure, [0])
     print(f"layered skin, {pressure:.0f} Pa: mean {mean:.3f}, F {gaussian:.3f}, delta form {delta:.3f}")
     assert low < mean < high

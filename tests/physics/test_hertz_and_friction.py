@@ -10,17 +10,17 @@ from skinbayes.friction import friction_coefficient
 
 def test_mean_pressure_of_the_paper():
     # 0.5 N on a ball of 8 mm: 6.83 kPa (with E*² in the cube root; with E* the unit would not even be a pressure)
-    contact = sphere_contact(0.5, 8e-3, reduced_modulus(20e3, 0.5))
+    contact = sphere_contact(0.5, 8e-3, reduced_modulus=reduced_modulus(20e3, 0.5))
     assert contact.mean_pressure == pytest.approx(6830, rel=2e-4)
-    assert 2 * sphere_contact(0.2, 8e-3, reduced_modulus(20e3, 0.5)).contact_radius == pytest.approx(
-        7.11e-3, rel=1e-3
-    )
+    assert 2 * sphere_contact(
+        0.2, 8e-3, reduced_modulus=reduced_modulus(20e3, 0.5)
+    ).contact_radius == pytest.approx(7.11e-3, rel=1e-3)
 
 
 @pytest.mark.parametrize("case", [(0.5, 8e-3, 2.7e4), (1e-9, 1e-6, 1e9), (12.0, 0.3, 5e6)])
 def test_pressure_distribution_carries_the_load_and_displaces_by_the_indentation(case):
     force, radius, modulus = case
-    contact = sphere_contact(force, radius, modulus)
+    contact = sphere_contact(force, radius, reduced_modulus=modulus)
     a, peak = contact.contact_radius, contact.maximum_pressure
 
     def pressure(share):
@@ -37,19 +37,24 @@ def test_pressure_distribution_carries_the_load_and_displaces_by_the_indentation
 
 
 def test_scaling_and_shapes():
-    contact = sphere_contact(np.array([[0.1], [0.8]]), 8e-3, np.array([1e4, 2e4, 8e4]))
+    contact = sphere_contact(np.array([[0.1], [0.8]]), 8e-3, reduced_modulus=np.array([1e4, 2e4, 8e4]))
     assert contact.mean_pressure.shape == (2, 3)
     np.testing.assert_allclose(contact.mean_pressure[1], 2 * contact.mean_pressure[0], rtol=1e-14)
     np.testing.assert_allclose(contact.mean_pressure[:, 2], 4 * contact.mean_pressure[:, 0], rtol=1e-14)
 
 
 def test_impossible_arguments_give_nan_and_no_load_no_contact():
-    contact = sphere_contact([-1.0, 1.0, 1.0, np.nan], [1.0, -1.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0])
+    contact = sphere_contact(
+        [-1.0, 1.0, 1.0, np.nan], [1.0, -1.0, 1.0, 1.0], reduced_modulus=[1.0, 1.0, 0.0, 1.0]
+    )
     assert np.isnan(np.array(contact)).all()
-    assert np.array_equal(sphere_contact(0.0, 1.0, 1.0), np.zeros(4))
+    assert np.array_equal(sphere_contact(0.0, 1.0, reduced_modulus=1.0), np.zeros(4))
 
 
 def test_friction_coefficient():
-    assert friction_coefficient(15e6, 1.366e-4, 6830.0) == pytest.approx(0.3, rel=1e-12)
-    assert friction_coefficient(np.full((3, 1), 1e6), np.full((1, 2), 1e-3), 1e4).shape == (3, 2)
-    assert np.isnan(friction_coefficient(1e6, 0.0, 0.0))
+    assert friction_coefficient(15e6, 1.366e-4, nominal_pressure=6830.0) == pytest.approx(0.3, rel=1e-12)
+    assert friction_coefficient(np.full((3, 1), 1e6), np.full((1, 2), 1e-3), nominal_pressure=1e4).shape == (
+        3,
+        2,
+    )
+    assert np.isnan(friction_coefficient(1e6, 0.0, nominal_pressure=0.0))

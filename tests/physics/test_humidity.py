@@ -20,11 +20,20 @@ LOAD, ANGLE, ROOM = 6830.0, np.radians(80.0), 293.15
 
 
 def layer(modulus):
-    return LayeredSkin(modulus, 20e3, 0.5, 0.5, 20e-6)
+    return LayeredSkin(young_modulus_layer=modulus, young_modulus_bulk=20e3, layer_thickness=20e-6)
 
 
 def in_air(humidity, skin, **options):
-    return capillary_state_in_humid_air(humidity, ROOM, LOAD, SURFACE, skin, ANGLE, 0.0, **options)
+    return capillary_state_in_humid_air(
+        humidity,
+        ROOM,
+        nominal_pressure=LOAD,
+        spectrum=SURFACE,
+        skin=skin,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+        **options,
+    )
 
 
 def test_kelvin_equation():
@@ -41,7 +50,7 @@ def test_kelvin_equation():
 
 
 def test_molecules():
-    gap = kelvin_gap(kelvin_radius([0.05, 0.1, 0.15, 0.5, 1.0], ROOM), ANGLE, 0.0)
+    gap = kelvin_gap(kelvin_radius([0.05, 0.1, 0.15, 0.5, 1.0], ROOM), ANGLE, contact_angle_counterface=0.0)
     np.testing.assert_array_equal(is_below_molecule(gap), [1, 1, 0, 0, 0])
     assert np.isnan(is_below_molecule(np.nan))
     assert molecular_volume_of_water(ROOM) ** (1 / 3) == pytest.approx(0.31e-9, rel=0.01)
@@ -66,7 +75,7 @@ def test_solution_satisfies_the_equations_with_the_public_gap_distribution():
     radius = kelvin_radius(humidity, ROOM)
     np.testing.assert_allclose(state.kelvin_gap, radius * (np.cos(ANGLE) + 1), rtol=1e-14)
     for i in range(3):
-        gaps = gap_distribution(state.total_pressure[i], SURFACE, layer(15e6))
+        gaps = gap_distribution(state.total_pressure[i], SURFACE, skin=layer(15e6))
         wet = gaps.cumulative(state.kelvin_gap[i]) - gaps.contact_fraction
         total = LOAD + surface_tension_of_water(ROOM) / radius[i] * wet
         assert state.total_pressure[i] == pytest.approx(total, rel=1e-9)
@@ -78,21 +87,29 @@ def test_ends():
     assert state.relative_contact_area[0] == pytest.approx(state.relative_contact_area[1], rel=0.01)
     # no bridges on polypropylene
     plastic = capillary_state_in_humid_air(
-        [0.3, 0.9], ROOM, LOAD, SURFACE, layer(7e6), ANGLE, np.radians(102.0)
+        [0.3, 0.9],
+        ROOM,
+        nominal_pressure=LOAD,
+        spectrum=SURFACE,
+        skin=layer(7e6),
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=np.radians(102.0),
     )
     np.testing.assert_array_equal(plastic.capillary_pressure, 0.0)
     np.testing.assert_array_equal(plastic.kelvin_gap, 0.0)
     np.testing.assert_allclose(plastic.wet_area, 0.0, atol=1e-8)
     assert plastic.relative_contact_area[0] == pytest.approx(state.relative_contact_area[1], rel=1e-9)
     # and none in saturated air either, where the radius is infinite
-    assert kelvin_gap(np.inf, ANGLE, np.radians(102.0)) == 0.0
-    assert kelvin_gap(np.inf, ANGLE, 0.0) == np.inf
+    assert kelvin_gap(np.inf, ANGLE, contact_angle_counterface=np.radians(102.0)) == 0.0
+    assert kelvin_gap(np.inf, ANGLE, contact_angle_counterface=0.0) == np.inf
     assert np.isnan(in_air([-0.1, 1.2], layer(7e6)).wet_area).all()
 
 
 def test_a_layer_of_its_own_for_each_humidity():
     humidity = np.array([0.3, 0.6, 0.9, 0.99])
-    moduli = young_modulus_at_humidity(humidity, 1e9, 7e6, 0.7, 2.0)
+    moduli = young_modulus_at_humidity(
+        humidity, 1e9, young_modulus_wet=7e6, transition_humidity=0.7, sharpness=2.0
+    )
     state = in_air(humidity[:, None], layer(moduli))
     assert state.wet_area.shape == (4, 1)
     for i in range(4):
@@ -102,12 +119,16 @@ def test_a_layer_of_its_own_for_each_humidity():
 
 def test_softening_layer():
     humidity = np.linspace(0, 1, 101)
-    moduli = young_modulus_at_humidity(humidity, 2e9, 8e6, 0.7, 1.7)
+    moduli = young_modulus_at_humidity(
+        humidity, 2e9, young_modulus_wet=8e6, transition_humidity=0.7, sharpness=1.7
+    )
     assert moduli[0] == pytest.approx(2e9, rel=1e-12)
     assert moduli[-1] == pytest.approx(8e6, rel=1e-12)
     assert moduli[70] == pytest.approx(np.sqrt(2e9 * 8e6), rel=1e-9)
     assert np.all(np.diff(moduli[1:-1]) < 0)
-    steeper = young_modulus_at_humidity(humidity, 2e9, 8e6, 0.7, 4.0)
+    steeper = young_modulus_at_humidity(
+        humidity, 2e9, young_modulus_wet=8e6, transition_humidity=0.7, sharpness=4.0
+    )
     assert np.all(steeper[1:70] > moduli[1:70])
     assert np.all(steeper[71:-1] < moduli[71:-1])
     for bad in (
@@ -116,4 +137,8 @@ def test_softening_layer():
         (0.5, 1e9, 7e6, 1.0, 2.0),
         (0.5, 1e9, 7e6, 0.7, 0.0),
     ):
-        assert np.isnan(young_modulus_at_humidity(*bad))
+        humidity, dry, wet, transition, sharpness = bad
+        modulus = young_modulus_at_humidity(
+            humidity, dry, young_modulus_wet=wet, transition_humidity=transition, sharpness=sharpness
+        )
+        assert np.isnan(modulus)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from named_fields import skin_from
 
 from skinbayes.contact import (
     LayeredSkin,
@@ -91,7 +92,7 @@ MATERIALS = [
 @pytest.mark.parametrize("material", MATERIALS)
 def test_response_agrees_with_a_solution_of_the_layer_problem(material):
     thickness = 20e-6
-    skin = LayeredSkin(*material, thickness)
+    skin = skin_from((*material, thickness))
     x = np.array([1e-4, 3e-3, 0.05, 0.3, 1.0, 2.7, 6.0, 15.0])
     expected = [response_by_linear_system(*material, value) for value in x]
     np.testing.assert_allclose(surface_response(skin, x / thickness), expected, rtol=2e-11)
@@ -102,19 +103,34 @@ def test_soft_layer_on_stiff_ground(ratio):
     x = np.array([1e-3, 0.05, 0.5, 3.0])
     expected = [response_by_linear_system(2e4 * ratio, 2e4, 0.5, 0.5, value) for value in x]
     np.testing.assert_allclose(
-        surface_response(LayeredSkin(2e4 * ratio, 2e4, 0.5, 0.5, 1.0), x), expected, rtol=1e-9
+        surface_response(
+            LayeredSkin(young_modulus_layer=2e4 * ratio, young_modulus_bulk=2e4, layer_thickness=1.0), x
+        ),
+        expected,
+        rtol=1e-9,
     )
 
 
 def test_no_layer_is_no_layer():
     np.testing.assert_allclose(
-        surface_response(LayeredSkin(5e4, 5e4, 0.3, 0.3, 2e-5), np.geomspace(1, 1e8, 30)), 1.0, rtol=1e-14
+        surface_response(
+            LayeredSkin(
+                young_modulus_layer=5e4,
+                young_modulus_bulk=5e4,
+                poisson_ratio_layer=0.3,
+                poisson_ratio_bulk=0.3,
+                layer_thickness=2e-5,
+            ),
+            np.geomspace(1, 1e8, 30),
+        ),
+        1.0,
+        rtol=1e-14,
     )
 
 
 @given(st.floats(1e-3, 1e7), st.floats(-0.9, 0.5), st.floats(-0.9, 0.5), st.floats(1e-7, 1e-3))
 def test_limits_of_the_response(ratio, nu0, nu1, thickness):
-    skin = LayeredSkin(2e4 * ratio, 2e4, nu0, nu1, thickness)
+    skin = skin_from((2e4 * ratio, 2e4, nu0, nu1, thickness))
     static = reduced_modulus(2e4 * ratio, nu0) / reduced_modulus(2e4, nu1)
     response = surface_response(skin, [0.0, 1e-9 / thickness, 60 / thickness])
     assert response[0] == pytest.approx(static, rel=1e-9)
@@ -124,12 +140,16 @@ def test_limits_of_the_response(ratio, nu0, nu1, thickness):
 
 @given(st.floats(1.01, 1e7), st.floats(0.0, 0.5))
 def test_a_stiff_layer_hides_the_bulk_more_at_larger_wavevectors(ratio, nu):
-    response = surface_response(LayeredSkin(ratio, 1.0, nu, nu, 1.0), np.geomspace(1e-6, 20, 200))
+    response = surface_response(skin_from((ratio, 1.0, nu, nu, 1.0)), np.geomspace(1e-6, 20, 200))
     assert np.all(np.diff(response) <= 1e-12 * response[:-1])
 
 
 def test_shapes():
-    skin = LayeredSkin(np.full((3, 1), 7e6), 2e4, 0.5, 0.5, np.full((1, 2), 2e-5))
+    skin = LayeredSkin(
+        young_modulus_layer=np.full((3, 1), 7e6),
+        young_modulus_bulk=2e4,
+        layer_thickness=np.full((1, 2), 2e-5),
+    )
     assert surface_response(skin, np.geomspace(1e3, 1e8, 5)).shape == (3, 2, 5)
     assert surface_response(skin, np.full((3, 2, 4), 1e5)).shape == (3, 2, 4)
     assert effective_modulus(skin, 1e5).shape == (3, 2)
@@ -148,9 +168,9 @@ def test_shapes():
     ],
 )
 def test_impossible_skin(bad, message):
-    assert np.all(np.isnan(surface_response(LayeredSkin(*bad), [1e3, 1e5])))
+    assert np.all(np.isnan(surface_response(skin_from(bad), [1e3, 1e5])))
     with pytest.raises(InputError, match=message):
-        validate_skin(LayeredSkin(*bad))
+        validate_skin(skin_from(bad))
 
 
 def test_reduced_modulus():

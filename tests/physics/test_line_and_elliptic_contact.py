@@ -13,7 +13,7 @@ from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
 
 def test_line_pressure_carries_the_load_and_flattens_the_cylinder():
     load, radius, modulus = 21.92, 4.53e-3, 2.7e4
-    contact = line_contact(load, radius, modulus)
+    contact = line_contact(load, radius, reduced_modulus=modulus)
     b, peak = contact.half_width, contact.maximum_pressure
     assert quad(lambda x: peak * np.sqrt(1 - (x / b) ** 2), -b, b)[0] == pytest.approx(load, rel=1e-8)
     assert contact.mean_pressure == pytest.approx(load / (2 * b), rel=1e-12)
@@ -33,9 +33,9 @@ def test_line_pressure_carries_the_load_and_flattens_the_cylinder():
 
 def test_both_conditions_behind_the_cylinder_of_a_sphere():
     force, radius, modulus = np.array([0.02, 0.5, 5.0]), 8e-3, reduced_modulus(20e3, 0.5)
-    sphere = sphere_contact(force, radius, modulus)
-    cylinder = cylinder_of_sphere(force, radius, modulus)
-    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, modulus)
+    sphere = sphere_contact(force, radius, reduced_modulus=modulus)
+    cylinder = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
+    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, reduced_modulus=modulus)
     np.testing.assert_allclose(line.mean_pressure, sphere.mean_pressure, rtol=1e-13)
     np.testing.assert_allclose(2 * line.half_width * np.sqrt(2 / 3), sphere.contact_radius, rtol=1e-13)
     # the closed forms of the factors, and their printed values
@@ -59,8 +59,8 @@ def test_rigid_plates_with_these_contact_areas_squeeze_out_fluid_in_the_same_tim
 
 def test_skin_of_section_6():
     modulus = reduced_modulus(20e3, 0.5)
-    cylinder = cylinder_of_sphere(0.2, 8e-3, modulus)
-    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, modulus)
+    cylinder = cylinder_of_sphere(0.2, 8e-3, reduced_modulus=modulus)
+    line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, reduced_modulus=modulus)
     assert cylinder.cylinder_radius == pytest.approx(4.53e-3, rel=1e-3)
     assert cylinder.load_per_length == pytest.approx(21.9, rel=1e-3)
     assert line.half_width == pytest.approx(2.18e-3, rel=1e-3)
@@ -90,7 +90,7 @@ def test_near_the_circle_no_digits_are_lost():
 @pytest.mark.parametrize("radii", [(8e-3, 8e-3), (8e-3, 16e-3), (8e-3, 0.4), (16e-3, 8e-3)])
 def test_elliptic_pressure_carries_the_load_and_flattens_the_body(radii):
     force, modulus = 0.3, 5e4
-    contact = elliptic_contact(force, *radii, modulus)
+    contact = elliptic_contact(force, radii[0], radius_across=radii[1], reduced_modulus=modulus)
     a, b = contact.semi_axis_along, contact.semi_axis_across
     assert contact.maximum_pressure * 2 / 3 * np.pi * a * b == pytest.approx(force, rel=1e-12)
     assert contact.mean_pressure * np.pi * a * b == pytest.approx(force, rel=1e-12)
@@ -107,7 +107,7 @@ def test_elliptic_pressure_carries_the_load_and_flattens_the_body(radii):
 
 def test_displacement_of_an_elliptic_contact_by_brute_force():
     force, modulus, radii = 0.3, 5e4, (8e-3, 24e-3)
-    contact = elliptic_contact(force, *radii, modulus)
+    contact = elliptic_contact(force, radii[0], radius_across=radii[1], reduced_modulus=modulus)
     a, b = contact.semi_axis_along, contact.semi_axis_across
 
     def displacement(x):
@@ -132,11 +132,11 @@ def test_displacement_of_an_elliptic_contact_by_brute_force():
 
 def test_cylinder_of_an_ellipse_is_equation_b1():
     force, along, across, modulus = 0.2, 8e-3, np.array([8e-3, 1e-2, 4e-2, 1.0]), 2.7e4
-    contact = elliptic_contact(force, along, across, modulus)
+    contact = elliptic_contact(force, along, radius_across=across, reduced_modulus=modulus)
     factors = ellipse_factors(contact.semi_axis_across / contact.semi_axis_along)
     radius = np.sqrt(along * across)
-    circle = cylinder_of_sphere(force, radius, modulus)
-    cylinder = cylinder_of_ellipse(force, along, across, modulus)
+    circle = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
+    cylinder = cylinder_of_ellipse(force, along, radius_across=across, reduced_modulus=modulus)
     np.testing.assert_allclose(
         cylinder.cylinder_radius, factors.cylinder_radius * circle.cylinder_radius, rtol=1e-12
     )
@@ -147,8 +147,12 @@ def test_cylinder_of_an_ellipse_is_equation_b1():
 
 
 def test_impossible_arguments_give_nan():
-    assert np.isnan(np.array(line_contact([-1.0, 1.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, -1.0]))).all()
-    assert np.isnan(np.array(elliptic_contact([1.0, 1.0], [-1.0, 1.0], [1.0, 0.0], 1.0))).all()
-    assert np.isnan(cylinder_of_ellipse(1.0, 2.0, 1.0, 1.0).cylinder_radius)
-    assert np.isnan(cylinder_of_sphere(-1.0, 1.0, 1.0).cylinder_radius)
+    assert np.isnan(
+        np.array(line_contact([-1.0, 1.0, 1.0], [1.0, 0.0, 1.0], reduced_modulus=[1.0, 1.0, -1.0]))
+    ).all()
+    assert np.isnan(
+        np.array(elliptic_contact([1.0, 1.0], [-1.0, 1.0], radius_across=[1.0, 0.0], reduced_modulus=1.0))
+    ).all()
+    assert np.isnan(cylinder_of_ellipse(1.0, 2.0, radius_across=1.0, reduced_modulus=1.0).cylinder_radius)
+    assert np.isnan(cylinder_of_sphere(-1.0, 1.0, reduced_modulus=1.0).cylinder_radius)
     assert np.isnan(ellipse_factors(-2.0).size)

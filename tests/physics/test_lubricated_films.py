@@ -15,10 +15,13 @@ from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_
 from skinbayes.lubrication.flow_factors import TrivialFlowFactors
 from skinbayes.roughness import named_surface
 
-WET, SURFACE = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+WET, SURFACE = (
+    LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
+    named_surface("paper_reference"),
+)
 MODULUS = float(reduced_modulus(20e3, 0.5))
-RADIUS, LOAD = (float(x) for x in cylinder_of_sphere(0.2, 8e-3, MODULUS))
-HERTZ = line_contact(LOAD, RADIUS, MODULUS)
+LOAD, RADIUS = (float(x) for x in cylinder_of_sphere(0.2, 8e-3, reduced_modulus=MODULUS))
+HERTZ = line_contact(LOAD, RADIUS, reduced_modulus=MODULUS)
 PER_PRODUCT = lubrication_number_per_product(RADIUS, HERTZ)
 
 
@@ -87,7 +90,7 @@ def test_slow_sliding_is_the_dry_contact():
     assert films.asperity_load_share == pytest.approx([1, 1], abs=1e-5)
     assert films.asperity_pressure[0] @ films.load_weight == pytest.approx(LOAD, rel=1e-6)
     loaded = films.asperity_pressure[0] > 1.0
-    expected = mean_separation(films.asperity_pressure[0, loaded], SURFACE, WET)
+    expected = mean_separation(films.asperity_pressure[0, loaded], SURFACE, skin=WET)
     np.testing.assert_allclose(films.separation[0, loaded], expected, rtol=1e-4)
     # friction of the fluid is proportional to the speed, down to any speed
     assert films.couette[1] / films.couette[0] == pytest.approx(1e3, rel=1e-5)
@@ -101,14 +104,14 @@ def test_slow_sliding_is_the_dry_contact():
 def test_asperity_law_is_the_inverse_of_the_mean_separation():
     law = asperity_law(SURFACE, WET)
     u = np.geomspace(5e-7, 1e-3, 400)
-    exact = pressure_at_separation(u, SURFACE, WET)
+    exact = pressure_at_separation(u, SURFACE, skin=WET)
     found, slope = law(u)
     np.testing.assert_allclose(found, exact, rtol=2e-4)
     step = 1e-6 * u
     np.testing.assert_allclose(slope, (law(u + step)[0] - law(u - step)[0]) / (2 * step), rtol=1e-6)
     np.testing.assert_allclose(law.scaled(1e-5, 1e3)(u / 1e-5)[0], found / 1e3, rtol=1e-10)
     np.testing.assert_allclose(law.scaled(1e-5, 1e3)(u / 1e-5)[1], slope / 1e3 * 1e-5, rtol=1e-10)
-    assert law.separation_at(5e3) == pytest.approx(mean_separation(5e3, SURFACE, WET), rel=2e-2)
+    assert law.separation_at(5e3) == pytest.approx(mean_separation(5e3, SURFACE, skin=WET), rel=2e-2)
     # it rises without a limit, and without an overflow, where surfaces would overlap
     assert np.all(np.diff(law(np.array([-1e-4, -1e-6, 0.0, 1e-8]))[0]) <= 0)
     assert np.isfinite(law(np.array([-1.0]))[0]).all()

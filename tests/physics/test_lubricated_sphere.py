@@ -15,6 +15,7 @@ from lubricated_sphere import (
     polar_grid,
     sector_kernel,
 )
+from named_fields import surface_from
 from scipy.interpolate import CubicSpline
 from scipy.special import ellipe, ellipk
 
@@ -24,10 +25,10 @@ from skinbayes.contact import (
     reduced_modulus,
     relative_contact_area,
     sphere_contact,
-    stress_variance,
+    twice_stress_variance,
 )
 from skinbayes.lubrication import asperity_law, lubricated_films, stribeck_curve
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import named_surface
 
 # What the map is worth, sphere over cylinder with the whole inlet of its parabola: (smallest, largest) that is accepted
 FIGURE_11 = {
@@ -47,7 +48,8 @@ SKIN = {
 }
 FLANK = (1.15, 1.32)  # speed at which asperities carry half of the load, skin under a stiffer layer
 
-GLASS_BALL, PAPER_SKIN = (8e-3, 0.2, 20e3 / 0.75), LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6)
+GLASS_BALL = (8e-3, 0.2, 20e3 / 0.75)
+PAPER_SKIN = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
 FIGURE_11_BALL = (1e-2, 1.3, 1.6e6)
 
 
@@ -59,7 +61,7 @@ def hertz_deflection(r):
 
 
 def number_of(product, radius, force, modulus):
-    hertz = sphere_contact(force, radius, modulus)
+    hertz = sphere_contact(force, radius, reduced_modulus=modulus)
     return 6 * product * radius**2 / (hertz.contact_radius**3 * hertz.maximum_pressure)
 
 
@@ -134,7 +136,7 @@ def test_stiff_asperities_carry_like_a_dry_contact():
 def rough_film():
     """One mixed film of skin: solver, state, λ."""
     radius, force, modulus = GLASS_BALL
-    hertz = sphere_contact(force, radius, modulus)
+    hertz = sphere_contact(force, radius, reduced_modulus=modulus)
     law = asperity_law(named_surface("paper_reference"), PAPER_SKIN)
     scaled = law.scaled(float(hertz.contact_radius**2 / radius), float(hertz.maximum_pressure))
     solver = SphereSolver(polar_grid(36, 20, 0.06, 20.0), scaled)
@@ -207,7 +209,7 @@ def test_figure_11_sphere_and_cylinder():
     products = np.geomspace(1e-3, 1e-1, 5)
     sphere = lubricated_sphere(products, radius, force, modulus, None, polar_grid(48, 30, 0.06, 20.0))
     coarse = lubricated_sphere(products, radius, force, modulus, None, polar_grid(30, 20, 0.06, 20.0))
-    cylinder = cylinder_of_sphere(force, radius, modulus)
+    cylinder = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
     line = lubricated_films(
         products,
         cylinder_radius=float(cylinder.cylinder_radius),
@@ -260,7 +262,7 @@ def both_curves(products, ball, skin, spectrum, stress, grid):
     """Films and friction of the sphere, and the Stribeck curve of the cylinder."""
     radius, force, modulus = ball
     sphere = lubricated_sphere(products, radius, force, modulus, asperity_law(spectrum, skin), grid)
-    contact = relative_contact_area(sphere.asperity_pressure, stress_variance(spectrum, skin))
+    contact = relative_contact_area(sphere.asperity_pressure, twice_stress_variance(spectrum, skin))
     friction = stress * (contact @ sphere.area) / force + sphere.couette + sphere.pressure_flow
     line = stribeck_curve(
         products,
@@ -315,10 +317,11 @@ def test_skin_sphere_and_cylinder():
     ],
 )
 def test_flank_of_other_balls(bulk, layer, height, radius, force):
-    ball, skin = (radius, force, reduced_modulus(bulk, 0.5)), LayeredSkin(layer, bulk, 0.5, 0.5, 20e-6)
-    spectrum = SelfAffineSpectrum(height, 0.78, 1e3, 6.345e3, 1e9)
+    ball = (radius, force, reduced_modulus(bulk, 0.5))
+    skin = LayeredSkin(young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=20e-6)
+    spectrum = surface_from((height, 0.78, 1e3, 6.345e3, 1e9))
     # smooth surfaces would be 0.4 λ^0.6 a²/R apart; from where asperities keep them as far apart on, they lose the load
-    hertz = sphere_contact(*(ball[1], ball[0], ball[2]))
+    hertz = sphere_contact(ball[1], ball[0], reduced_modulus=ball[2])
     rough = asperity_law(spectrum, skin).separation_at(float(hertz.maximum_pressure))
     middle = (rough * radius / hertz.contact_radius**2 / 0.4) ** (1 / 0.6) / number_of(1.0, *ball)
     products = middle * np.geomspace(0.2, 10.0, 7)

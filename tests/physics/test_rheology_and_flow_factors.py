@@ -17,7 +17,10 @@ from skinbayes.lubrication import (
 )
 from skinbayes.roughness import named_surface
 
-WET, SURFACE = LayeredSkin(7e6, 20e3, 0.5, 0.5, 20e-6), named_surface("paper_reference")
+WET, SURFACE = (
+    LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6),
+    named_surface("paper_reference"),
+)
 
 
 def test_thinning_sets_in_where_the_paper_says():
@@ -28,7 +31,7 @@ def test_thinning_sets_in_where_the_paper_says():
     stress = thinned_viscosity(10.0, rate) * rate
     assert np.all(np.diff(stress) > 0)
     assert thinned_viscosity(np.ones((3, 1)), rate).shape == (3, 50)
-    assert np.isnan(thinned_viscosity([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 0.0])).all()
+    assert np.isnan(thinned_viscosity([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], scale=[1.0, 1.0, 0.0])).all()
 
 
 @pytest.mark.parametrize("liquid", [ShearThinning(30.0), FlowCurve([1, 10, 1e3, 1e4], [3.0, 2.9, 1.0, 0.4])])
@@ -153,7 +156,7 @@ def test_factors_of_skin():
 
 def test_table_agrees_with_its_source_between_the_points():
     factors = tabulated_flow_factors(SURFACE, WET)
-    gaps = gap_distribution(3.1e3, SURFACE, WET)
+    gaps = gap_distribution(3.1e3, SURFACE, skin=WET)
     edges = np.geomspace(22.4e-8, 2e-3, 3000)
     share, volume = np.diff(gaps.cumulative(edges)), np.diff(gaps.film(edges))
     filled = share > 1e-14

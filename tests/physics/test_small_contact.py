@@ -22,9 +22,9 @@ def scatter_of_mean_height(radius):
 
 
 def test_mean_height_under_a_small_ball_scatters_by_micrometres():
-    small = sphere_contact(0.02, 1e-3, MODULUS).contact_radius
+    small = sphere_contact(0.02, 1e-3, reduced_modulus=MODULUS).contact_radius
     assert scatter_of_mean_height(small) == pytest.approx(4.9e-6, rel=0.02)
-    assert scatter_of_mean_height(sphere_contact(0.5, 8e-3, MODULUS).contact_radius) < 0.5e-6
+    assert scatter_of_mean_height(sphere_contact(0.5, 8e-3, reduced_modulus=MODULUS).contact_radius) < 0.5e-6
     edge = ENOUGH_WAVELENGTHS * np.pi / 6.345e3
     assert 0.03 < scatter_of_mean_height(edge) / 22.4e-6 < 0.05
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from named_fields import surface_from
 from scipy.integrate import quad
 
 from skinbayes.errors import InputError
 from skinbayes.roughness import (
     SURFACES,
-    SelfAffineSpectrum,
     named_surface,
     rms_height,
     rms_slope,
@@ -54,18 +54,18 @@ CASES = [
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("order", [0.0, 1.0, 2.0, 4.0])
 def test_moments_agree_with_quadrature(case, order):
-    spectrum = SelfAffineSpectrum(*case)
+    spectrum = surface_from(case)
     assert spectral_moment(spectrum, order) == pytest.approx(moment_by_quadrature(spectrum, order), rel=1e-10)
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_height_is_the_height_that_was_given(case):
-    assert rms_height(SelfAffineSpectrum(*case)) == pytest.approx(case[0], rel=1e-13)
+    assert rms_height(surface_from(case)) == pytest.approx(case[0], rel=1e-13)
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_power_is_the_definition(case):
-    spectrum = SelfAffineSpectrum(*case)
+    spectrum = surface_from(case)
     q = np.geomspace(case[2] / 3, case[4] * 3, 200)
     expected = [power_by_hand(x, spectrum.plateau_power, *case[1:]) for x in q]
     np.testing.assert_allclose(spectrum.power(q), expected, rtol=1e-12)
@@ -80,7 +80,7 @@ def test_textbook_slope_without_plateau():
         * q0
         * np.sqrt(hurst / (1 - hurst) * (ratio ** (2 - 2 * hurst) - 1) / (1 - ratio ** (-2 * hurst)))
     )
-    assert rms_slope(SelfAffineSpectrum(height, hurst, q0, q0, q1)) == pytest.approx(expected, rel=1e-12)
+    assert rms_slope(surface_from((height, hurst, q0, q0, q1))) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("slope", [1e-3, 0.1, 0.88, 2.8, 30.0, 1e4])
@@ -143,7 +143,7 @@ BAD = {
 
 @pytest.mark.parametrize("case", BAD.values(), ids=BAD.keys())
 def test_impossible_parameters_give_nan_and_a_message(case):
-    spectrum = SelfAffineSpectrum(*case)
+    spectrum = surface_from(case)
     assert np.isnan(rms_slope(spectrum))
     assert np.all(np.isnan(spectrum.power([2e3, 2e4])))
     with pytest.raises(InputError, match="must"):
@@ -151,7 +151,7 @@ def test_impossible_parameters_give_nan_and_a_message(case):
 
 
 def test_one_bad_member_leaves_the_others_alone():
-    batch = SelfAffineSpectrum([1e-6, -1e-6, 2e-6], 0.8, 1e3, 1e4, 1e8)
+    batch = surface_from(([1e-6, -1e-6, 2e-6], 0.8, 1e3, 1e4, 1e8))
     slopes = rms_slope(batch)
     assert np.isnan(slopes[1]) and slopes[2] == pytest.approx(2 * slopes[0], rel=1e-14)
     with pytest.raises(InputError, match="rms_height is -1e-06 m"):
@@ -159,7 +159,7 @@ def test_one_bad_member_leaves_the_others_alone():
 
 
 def test_shapes():
-    batch = SelfAffineSpectrum(np.full((3, 1), 1e-6), np.full((1, 2), 0.8), 1e3, 1e4, 1e8)
+    batch = surface_from((np.full((3, 1), 1e-6), np.full((1, 2), 0.8), 1e3, 1e4, 1e8))
     assert batch.power(np.geomspace(1e3, 1e8, 5)).shape == (3, 2, 5)
     assert batch.power(1e5).shape == (3, 2)
     assert rms_slope(batch).shape == (3, 2)
@@ -170,7 +170,7 @@ def test_shapes():
 )
 def test_more_bandwidth_means_more_slope(height, hurst, q0, plateau, width):
     q_r = q0 * plateau
-    narrow = SelfAffineSpectrum(height, hurst, q0, q_r, q_r * width)
+    narrow = surface_from((height, hurst, q0, q_r, q_r * width))
     validate_spectrum(narrow)
-    wide = SelfAffineSpectrum(height, hurst, q0, q_r, q_r * width * 2)
+    wide = surface_from((height, hurst, q0, q_r, q_r * width * 2))
     assert 0 < rms_slope(narrow) < rms_slope(wide)

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.lubrication import asperity_law, lubricated_films
-from skinbayes.roughness import SelfAffineSpectrum
 
 
 def random_films(rng, nodes):
@@ -14,10 +14,14 @@ def random_films(rng, nodes):
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
     bulk = scale(5e3, 5e6)
-    skin = LayeredSkin(max(bulk, scale(1e6, 1e9)), bulk, 0.5, 0.5, scale(1e-5, 1e-4))
-    surface = SelfAffineSpectrum(scale(1e-6, 5e-5), rng.uniform(0.6, 0.95), 1e3, scale(1.1e3, 2e4), 1e9)
+    skin = LayeredSkin(
+        young_modulus_layer=max(bulk, scale(1e6, 1e9)),
+        young_modulus_bulk=bulk,
+        layer_thickness=scale(1e-5, 1e-4),
+    )
+    surface = surface_from((scale(1e-6, 5e-5), rng.uniform(0.6, 0.95), 1e3, scale(1.1e3, 2e4), 1e9))
     modulus = float(reduced_modulus(bulk, 0.5))
-    cylinder = cylinder_of_sphere(scale(0.02, 5.0), scale(1e-3, 2e-2), modulus)
+    cylinder = cylinder_of_sphere(scale(0.02, 5.0), scale(1e-3, 2e-2), reduced_modulus=modulus)
     speeds = np.sort(np.exp(rng.uniform(np.log(1e-8), np.log(10.0), int(rng.integers(1, 31)))))
     law = asperity_law(surface, skin)
     radius, load = float(cylinder.cylinder_radius), float(cylinder.load_per_length)

@@ -114,7 +114,9 @@ def test_power_law_from_its_profile(exponent):
 
 
 def test_profile_of_the_isotropic_spectrum_gives_the_profile_back():
-    surface = SelfAffineSpectrum(2e-6, 0.8, 1e3, 8e3, 1e7)
+    surface = SelfAffineSpectrum(
+        rms_height=2e-6, hurst_exponent=0.8, wavevector_min=1e3, wavevector_rolloff=8e3, wavevector_max=1e7
+    )
 
     def profile(q):
         # C1D(q) = 2 ∫ k C(k)/sqrt(k² − q²) dk with k² = q² + u²

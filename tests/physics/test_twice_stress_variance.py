@@ -1,13 +1,14 @@
-"""Stress variance against scipy.integrate.quad, batches against their rows."""
+"""Twice the stress variance against scipy.integrate.quad, batches against their rows."""
 
 import itertools
 
 import numpy as np
 import pytest
+from named_fields import skin_from, surface_from
 from scipy.integrate import quad
 
-from skinbayes.contact import LayeredSkin, reduced_modulus, stress_variance, surface_response
-from skinbayes.roughness import SelfAffineSpectrum, TabulatedSpectrum, named_surface, rms_slope
+from skinbayes.contact import LayeredSkin, reduced_modulus, surface_response, twice_stress_variance
+from skinbayes.roughness import TabulatedSpectrum, named_surface, rms_slope
 
 
 def random_parameters(count, seed, wide=False):
@@ -44,7 +45,7 @@ def by_quadrature(roughness, skin, upper=np.inf):
         return over(function, np.log(q0), np.log(q_r) - 1e-15) + over(function, np.log(q_r), np.log(q1))
 
     plateau = height**2 / (2 * np.pi * full(lambda t: np.exp(2 * t) * spectrum_shape(np.exp(t))))
-    material = LayeredSkin(*skin)
+    material = skin_from(skin)
 
     def stress(t):
         q = np.exp(t)
@@ -57,7 +58,7 @@ def by_quadrature(roughness, skin, upper=np.inf):
 @pytest.mark.parametrize(("seed", "wide", "tolerance"), [(1, False, 1e-7), (2, True, 5e-5)])
 def test_variance_agrees_with_quadrature(seed, wide, tolerance):
     roughness, skin = random_parameters(25, seed, wide)
-    found = stress_variance(SelfAffineSpectrum(*roughness), LayeredSkin(*skin))
+    found = twice_stress_variance(surface_from(roughness), skin_from(skin))
     expected = [by_quadrature([x[i] for x in roughness], [x[i] for x in skin]) for i in range(25)]
     np.testing.assert_allclose(found, expected, rtol=tolerance)
 
@@ -65,27 +66,38 @@ def test_variance_agrees_with_quadrature(seed, wide, tolerance):
 def test_variance_up_to_a_wavevector_agrees_with_quadrature():
     roughness, skin = random_parameters(4, 3)
     q = np.array([2e2, 6e3, 3e4, 1e5, 4e5, 1e8, 1e12])
-    found = stress_variance(SelfAffineSpectrum(*roughness), LayeredSkin(*skin), q)
+    found = twice_stress_variance(surface_from(roughness), skin_from(skin), wavevector=q)
     for i in range(4):
         one = [x[i] for x in roughness], [x[i] for x in skin]
         np.testing.assert_allclose(found[i], [by_quadrature(*one, upper) for upper in q], rtol=1e-6)
     assert np.all(found[:, 0] == 0)
-    np.testing.assert_allclose(
-        found[:, -1], stress_variance(SelfAffineSpectrum(*roughness), LayeredSkin(*skin))
-    )
+    np.testing.assert_allclose(found[:, -1], twice_stress_variance(surface_from(roughness), skin_from(skin)))
 
 
 def test_without_a_layer_the_slope_is_all_that_matters():
     surface, modulus = named_surface("paper_reference"), reduced_modulus(1e6, 0.4)
-    found = stress_variance(surface, LayeredSkin(1e6, 1e6, 0.4, 0.4, 2e-5))
+    found = twice_stress_variance(
+        surface,
+        LayeredSkin(
+            young_modulus_layer=1e6,
+            young_modulus_bulk=1e6,
+            poisson_ratio_layer=0.4,
+            poisson_ratio_bulk=0.4,
+            layer_thickness=2e-5,
+        ),
+    )
     assert found == pytest.approx(modulus**2 * rms_slope(surface) ** 2 / 2, rel=1e-12)
 
 
 def test_very_thick_and_very_thin_layers_are_half_spaces():
     surface = named_surface("paper_reference")
     half_slope_squared = rms_slope(surface) ** 2 / 2
-    thick = stress_variance(surface, LayeredSkin(7e6, 2e4, 0.5, 0.5, 1.0))
-    thin = stress_variance(surface, LayeredSkin(7e6, 2e4, 0.5, 0.5, 1e-15))
+    thick = twice_stress_variance(
+        surface, LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=1.0)
+    )
+    thin = twice_stress_variance(
+        surface, LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=1e-15)
+    )
     assert thick == pytest.approx(reduced_modulus(7e6, 0.5) ** 2 * half_slope_squared, rel=1e-12)
     assert thin == pytest.approx(reduced_modulus(2e4, 0.5) ** 2 * half_slope_squared, rel=2e-3)
 
@@ -94,11 +106,19 @@ def test_tabulated_and_closed_spectrum_agree():
     surface = named_surface("paper_reference")
     q = np.union1d(np.geomspace(1e3, 1e9, 60), [surface.wavevector_rolloff])
     table = TabulatedSpectrum(q, surface.power(q))
-    skin = LayeredSkin(np.array([7e6, 1e9]), 2e4, 0.5, 0.5, np.array([2e-5, 5e-6]))
-    np.testing.assert_allclose(stress_variance(table, skin), stress_variance(surface, skin), rtol=1e-6)
+    skin = LayeredSkin(
+        young_modulus_layer=np.array([7e6, 1e9]),
+        young_modulus_bulk=2e4,
+        layer_thickness=np.array([2e-5, 5e-6]),
+    )
+    np.testing.assert_allclose(
+        twice_stress_variance(table, skin), twice_stress_variance(surface, skin), rtol=1e-6
+    )
     upper = np.geomspace(5e2, 3e9, 23)
     np.testing.assert_allclose(
-        stress_variance(table, skin, upper), stress_variance(surface, skin, upper), rtol=2e-5
+        twice_stress_variance(table, skin, wavevector=upper),
+        twice_stress_variance(surface, skin, wavevector=upper),
+        rtol=2e-5,
     )
 
 
@@ -110,14 +130,14 @@ def identical(a, b):
 @pytest.mark.parametrize("upper", [None, np.geomspace(1e3, 1e9, 11)])
 def test_batch_and_rows_agree_to_the_last_bit(count, upper):
     roughness, skin = random_parameters(count, 5, wide=True)
-    whole = stress_variance(SelfAffineSpectrum(*roughness), LayeredSkin(*skin), upper)
+    whole = twice_stress_variance(surface_from(roughness), skin_from(skin), wavevector=upper)
     for i in range(count):
         row = slice(i, i + 1)
-        part = stress_variance(
-            SelfAffineSpectrum(*(x[row] for x in roughness)), LayeredSkin(*(x[row] for x in skin)), upper
+        part = twice_stress_variance(
+            surface_from(x[row] for x in roughness), skin_from(x[row] for x in skin), wavevector=upper
         )
-        alone = stress_variance(
-            SelfAffineSpectrum(*(x[i] for x in roughness)), LayeredSkin(*(x[i] for x in skin)), upper
+        alone = twice_stress_variance(
+            surface_from(x[i] for x in roughness), skin_from(x[i] for x in skin), wavevector=upper
         )
         assert identical(part[0], whole[i])
         assert identical(alone, whole[i])
@@ -129,34 +149,49 @@ def test_batch_of_a_table_agrees_with_its_rows_to_the_last_bit(upper):
     q = np.geomspace(1e3, 1e9, 40)
     _, skin = random_parameters(9, 6)
     scale = np.linspace(0.5, 2, 9)
-    whole = stress_variance(TabulatedSpectrum(q, surface.power(q), scale), LayeredSkin(*skin), upper)
+    whole = twice_stress_variance(
+        TabulatedSpectrum(q, surface.power(q), scale=scale), skin_from(skin), wavevector=upper
+    )
     for i in range(9):
-        table = TabulatedSpectrum(q, surface.power(q), scale[i])
-        assert identical(stress_variance(table, LayeredSkin(*(x[i] for x in skin)), upper), whole[i])
+        table = TabulatedSpectrum(q, surface.power(q), scale=scale[i])
+        assert identical(
+            twice_stress_variance(table, skin_from(x[i] for x in skin), wavevector=upper), whole[i]
+        )
 
 
 def test_shapes_and_nan():
-    surface = SelfAffineSpectrum(np.array([[1e-5], [-1e-5], [2e-5]]), 0.8, 1e3, 1e4, 1e9)
-    skin = LayeredSkin(np.array([[7e6, 1e9]]), 2e4, 0.5, 0.5, 2e-5)
-    assert stress_variance(surface, skin).shape == (3, 2)
-    assert stress_variance(surface, skin, 1e5).shape == (3, 2)
-    assert stress_variance(surface, skin, [1e5, 1e6, 1e7]).shape == (3, 2, 3)
-    assert stress_variance(surface, skin, np.full((3, 2, 4), 1e5)).shape == (3, 2, 4)
-    bad = np.isnan(stress_variance(surface, skin))
+    surface = surface_from((np.array([[1e-5], [-1e-5], [2e-5]]), 0.8, 1e3, 1e4, 1e9))
+    skin = LayeredSkin(
+        young_modulus_layer=np.array([[7e6, 1e9]]), young_modulus_bulk=2e4, layer_thickness=2e-5
+    )
+    assert twice_stress_variance(surface, skin).shape == (3, 2)
+    assert twice_stress_variance(surface, skin, wavevector=1e5).shape == (3, 2)
+    assert twice_stress_variance(surface, skin, wavevector=[1e5, 1e6, 1e7]).shape == (3, 2, 3)
+    assert twice_stress_variance(surface, skin, wavevector=np.full((3, 2, 4), 1e5)).shape == (3, 2, 4)
+    bad = np.isnan(twice_stress_variance(surface, skin))
     assert bad[1].all() and not bad[[0, 2]].any()
-    assert np.isnan(stress_variance(surface, LayeredSkin(7e6, -2e4, 0.5, 0.5, 2e-5))).all()
+    assert np.isnan(
+        twice_stress_variance(
+            surface, LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=-2e4, layer_thickness=2e-5)
+        )
+    ).all()
 
 
 def test_rows_of_wavevectors_that_belong_to_the_batch():
-    surface = SelfAffineSpectrum(np.array([1e-5, 2e-5]), 0.8, 1e3, 1e4, 1e9)
-    skin = LayeredSkin(7e6, 2e4, 0.5, 0.5, 2e-5)
+    surface = surface_from((np.array([1e-5, 2e-5]), 0.8, 1e3, 1e4, 1e9))
+    skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=2e-5)
     upper = np.array([[1e4, 1e5], [1e6, 1e7]])
-    found = stress_variance(surface, skin, upper)
+    found = twice_stress_variance(surface, skin, wavevector=upper)
     for i in range(2):
-        one = SelfAffineSpectrum(surface.rms_height[i], 0.8, 1e3, 1e4, 1e9)
-        assert identical(found[i], stress_variance(one, skin, upper[i]))
+        one = surface_from((surface.rms_height[i], 0.8, 1e3, 1e4, 1e9))
+        assert identical(found[i], twice_stress_variance(one, skin, wavevector=upper[i]))
 
 
 def test_more_roughness_more_stress():
-    surface, skin = named_surface("paper_reference"), LayeredSkin(7e6, 2e4, 0.5, 0.5, 2e-5)
-    assert np.all(np.diff(stress_variance(surface, skin, np.geomspace(1.01e3, 1e9, 300))) > 0)
+    surface, skin = (
+        named_surface("paper_reference"),
+        LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=2e4, layer_thickness=2e-5),
+    )
+    assert np.all(
+        np.diff(twice_stress_variance(surface, skin, wavevector=np.geomspace(1.01e3, 1e9, 300))) > 0
+    )

@@ -1,0 +1,32 @@
+"""A problem in a few lines, for people who print it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from textwrap import shorten
+
+from skinbayes.problem.bound import BoundModel
+
+LONGEST, MOST_NAMES = 100, 12
+
+
+def summary(problem: BoundModel) -> str:
+    """Title, data, and the names of the parameters with their priors or values; the rest is in the attributes."""
+    said = [f"Problem '{problem.name}': {shorten(problem.spec.title, LONGEST, placeholder=' …')}"]
+    if problem.dataset is None:
+        said.append("data: none")
+    else:
+        rows = problem.conditions.n_rows
+        explained = ", ".join(f"{o.name} (noise {o.noise.name})" for o in problem.observations)
+        said.append(f"data: {rows} {'row' if rows == 1 else 'rows'} of {problem.dataset.shown}: {explained}")
+    said.append(f"forward model: {problem.forward.name}")
+    said += _listed("free", (f"{p.label}: {p.prior_text}" for p in problem.free))
+    said += _listed("fixed", (f"{p.label}: {p.prior_text}" for p in problem.fixed))
+    return "\n".join(said)
+
+
+def _listed(title: str, lines: Iterable[str]) -> list[str]:
+    found = list(lines)
+    more = [f"  and {len(found) - MOST_NAMES} more"] if len(found) > MOST_NAMES else []
+    shown = [f"  {shorten(line, LONGEST, placeholder=' …')}" for line in found[:MOST_NAMES]]
+    return [f"{title}: {len(found) or 'none'}", *shown, *more]

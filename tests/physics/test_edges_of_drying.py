@@ -1,0 +1,420 @@
+"""Drying skin at the ends of its domain: flooded, bridged, dry and closed contact, and averages over uneven films."""
+
+from dataclasses import fields
+from itertools import product
+
+import numpy as np
+import pytest
+
+from skinbayes.contact import LayeredSkin, mean_separation, total_contact_area, twice_stress_variance
+from skinbayes.errors import InputError
+from skinbayes.friction import friction_coefficient
+from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.wetting import (
+    FilmContact,
+    capillary_state,
+    drying_curve,
+    drying_features,
+    evaporation_rate,
+    evaporation_rate_from_pressures,
+    film_contact,
+    film_of_droplet,
+)
+
+SURFACE, SKIN = (
+    named_surface("paper_reference"),
+    LayeredSkin(
+        young_modulus_layer=7e6,
+        young_modulus_bulk=20e3,
+        poisson_ratio_layer=0.5,
+        poisson_ratio_bulk=0.5,
+        layer_thickness=20e-6,
+    ),
+)
+LOAD, ANGLE, DRY, YIELD, STRESS = 6830.0, np.radians(80.0), 1e9, 50e6, 15e6
+NONE = np.empty(0)
+
+
+def contact_of(
+    load=LOAD,
+    surface=SURFACE,
+    skin=SKIN,
+    tension=0.0727,
+    angle=ANGLE,
+    other=0.0,
+    dry=DRY,
+    limit=YIELD,
+    **more,
+):
+    return film_contact(
+        load,
+        surface,
+        skin=skin,
+        surface_tension=tension,
+        contact_angle_skin=angle,
+        contact_angle_counterface=other,
+        young_modulus_layer_dry=dry,
+        yield_stress=limit,
+        **more,
+    )
+
+
+def area_of(load=LOAD, surface=SURFACE, skin=SKIN, limit=YIELD, gamma=0.42):
+    return total_contact_area(
+        load, twice_stress_variance(surface, skin), yield_stress=limit, area_correction=gamma
+    )
+
+
+def with_layer(modulus, skin=SKIN):
+    return LayeredSkin(
+        young_modulus_layer=modulus,
+        young_modulus_bulk=skin.young_modulus_bulk,
+        poisson_ratio_layer=skin.poisson_ratio_layer,
+        poisson_ratio_bulk=skin.poisson_ratio_bulk,
+        layer_thickness=skin.layer_thickness,
+    )
+
+
+def member(parts, count):
+    """The second of a batch."""
+    return type(parts)(
+        **{x.name: np.broadcast_to(getattr(parts, x.name), count)[1] for x in fields(parts) if x.init}
+    )
+
+
+def check_ends(count):
+    rng = np.random.default_rng(5)
+
+    def between(low, high):
+        return np.exp(rng.uniform(np.log(low), np.log(high), count))
+
+    first, bulk = between(5e2, 2e3), between(1e4, 5e4)
+    surface = SelfAffineSpectrum(
+        rms_height=between(1e-5, 4e-5),
+        hurst_exponent=rng.uniform(0.7, 1.0, count),
+        wavevector_min=first,
+        wavevector_rolloff=first * between(1.0, 10.0),
+        wavevector_max=1e9,
+    )
+    skin = LayeredSkin(
+        young_modulus_layer=bulk * between(100.0, 1e3),
+        young_modulus_bulk=bulk,
+        poisson_ratio_layer=0.5,
+        poisson_ratio_bulk=0.5,
+        layer_thickness=between(1e-5, 4e-5),
+    )
+    load, angle, dry = between(2e3, 2e4), rng.uniform(0.0, np.pi, count), bulk * between(1e4, 1e5)
+    floor = between(1e-7, 1e-4)
+    for limit, half, closure in product((np.inf, YIELD), (None, 3e-6), ("gaussian", "sharp")):
+        contact = contact_of(
+            load,
+            surface,
+            skin,
+            angle=angle,
+            dry=dry,
+            limit=limit,
+            closure=closure,
+            film_floor=floor,
+            hardening_film=half,
+        )
+        # some pulls are out of reach, see `film_contact`; dry skin does not know of them
+        dry_area, ok = (
+            area_of(load, surface, with_layer(dry, skin), limit),
+            np.isfinite(contact.area).all(axis=-1),
+        )
+        assert ok.mean() >= 0.5
+        np.testing.assert_allclose(contact.dry_area, dry_area, rtol=1e-9)
+        film, area = contact.film[ok], contact.area[ok]
+        assert (np.diff(film, axis=-1) > 0).all() and ((area > 0) & (area <= 1 + 1e-9)).all()
+        flooded = mean_separation(load[:, None], surface, skin=skin)[:, 0]
+        np.testing.assert_allclose(film[:, -1], flooded[ok], rtol=1e-9)
+        np.testing.assert_allclose(film[:, 0], np.minimum(floor, flooded / 2)[ok], rtol=1e-9)
+        # flooded skin carries its load alone
+        np.testing.assert_allclose(area[:, -1], area_of(load, surface, skin, limit)[ok], rtol=1e-6)
+        # as uneven as can be, half of the track is flooded and half of it dry
+        wide = contact.average(np.zeros((count, 1)), np.full(count, 1e30))[0][ok, 0]
+        np.testing.assert_allclose(wide, (dry_area[ok] + area[:, -1]) / 2, rtol=1e-4)
+        ends = contact.average(np.full((count, 2), [-np.inf, np.inf]), np.zeros(count))
+        np.testing.assert_array_equal(ends[0][ok], np.stack([contact.dry_area[ok], area[:, -1]], axis=-1))
+        np.testing.assert_array_equal(ends[1][ok], 0.0)
+        alone = contact_of(
+            load[1],
+            member(surface, count),
+            member(skin, count),
+            angle=angle[1],
+            dry=dry[1],
+            limit=limit,
+            closure=closure,
+            film_floor=floor[1],
+            hardening_film=half,
+        )
+        for name, value in vars(alone).items():
+            np.testing.assert_array_equal(getattr(contact, name)[1], value)
+
+
+def test_ends_of_the_film():
+    check_ends(4)
+
+
+@pytest.mark.slow
+def test_ends_of_the_film_in_a_wide_box():
+    check_ends(60)
+
+
+def test_without_bridges_the_area_is_that_of_the_load():
+    for changes in ({"tension": 0.0}, {"angle": np.pi, "other": 0.0}, {"angle": np.pi, "other": np.pi}):
+        contact = contact_of(**changes)
+        np.testing.assert_allclose(contact.area, area_of(), rtol=1e-9)
+
+
+def test_a_yield_stress_at_the_load_makes_contact_complete():
+    for limit in (LOAD, 1.0):
+        contact = contact_of(limit=limit)
+        assert (contact.area == 1.0).all() and contact.dry_area == 1.0
+    assert contact_of(limit=np.inf).dry_area == pytest.approx(
+        area_of(skin=with_layer(DRY), limit=np.inf), rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("more", [{}, {"closure": "sharp"}, {"hardening_film": 5e-6}])
+def test_closed_contact_has_no_gap_for_water(more):
+    smooth = SelfAffineSpectrum(
+        rms_height=1e-12, hurst_exponent=0.78, wavevector_min=1e3, wavevector_rolloff=1e3, wavevector_max=1e9
+    )
+    for changes in ({"load": 1e12, "limit": np.inf}, {"surface": smooth}):
+        contact = contact_of(**changes, **more)
+        assert (contact.area == 1.0).all() and contact.dry_area == 1.0 and contact.film[-1] < 1e-29
+        load = changes.get("load", LOAD)
+        curve = drying_curve(
+            [0.0, 30.0, 1e3],
+            30.0,
+            initial_film=90e-6,
+            evaporation_rate=1.743e-7,
+            contact=contact,
+            frictional_shear_stress=STRESS,
+            nominal_pressure=load,
+        )
+        np.testing.assert_allclose(curve.friction_coefficient, STRESS / load, rtol=1e-12)
+
+
+def test_rough_skin_has_a_film_that_rises():
+    # folds of the film at nanometres
+    contact = contact_of(
+        surface=SelfAffineSpectrum(
+            rms_height=1e-3,
+            hurst_exponent=0.78,
+            wavevector_min=1e3,
+            wavevector_rolloff=1e3,
+            wavevector_max=1e9,
+        )
+    )
+    assert (np.diff(contact.film) > 0).all()
+    area, slope = contact.average(np.geomspace(1e-9, 1e-2, 400), np.array(1e-9))
+    assert (
+        np.isfinite(slope).all()
+        and (area >= contact.dry_area * (1 - 1e-9)).all()
+        and (area <= contact.area.max()).all()
+    )
+
+
+def check_hardening(half, sharpness):
+    contact = contact_of(hardening_film=half, hardening_sharpness=sharpness)
+    films = contact.film[[20, 100, 150, 200, 230]]
+    # the weight of the wet modulus, over that of flooded skin, from logarithms
+    log_weight = -np.logaddexp(0.0, sharpness * np.log(half / np.append(films, contact.film[-1])))
+    layers = with_layer(DRY * (7e6 / DRY) ** np.exp(log_weight[:-1] - log_weight[-1]))
+    state = capillary_state(
+        films[:, None],
+        LOAD,
+        spectrum=SURFACE,
+        skin=layers,
+        surface_tension=0.0727,
+        contact_angle_skin=ANGLE,
+        contact_angle_counterface=0.0,
+        refine=False,
+    )
+    wanted = area_of(state.total_pressure[:, 0], skin=layers)
+    # the twelve moduli between which the area is interpolated are good to 2 %
+    np.testing.assert_allclose(contact.average(films, np.array(0.0))[0], wanted, rtol=0.02)
+
+
+def test_hardening_is_right_however_sharp():
+    for half, sharpness in ((1e-4, 20.0), (5e-6, 1e3), (1e30, 2.0)):
+        check_hardening(half, sharpness)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sharpness", [0.01, 2.0, 20.0, 1e3, 1e9])
+@pytest.mark.parametrize("half", [1e-30, 5e-6, 1e-4, 1e30])
+def test_hardening_is_right_wherever_it_is(half, sharpness):
+    check_hardening(half, sharpness)
+
+
+def test_impossible_parameters_leave_no_number():
+    for changes in (
+        *({"load": x} for x in (0.0, -1.0, np.inf, np.nan)),
+        *({"tension": x} for x in (-1.0, np.nan)),
+        *({"angle": x} for x in (-1e-9, np.pi + 1e-9, np.nan)),
+        *({name: x} for name in ("dry", "limit", "film_floor") for x in (0.0, -1.0, np.nan)),
+        *({"area_correction": x} for x in (0.0, 1.1, np.nan)),
+        *({"hardening_film": x} for x in (0.0, -1.0, np.inf, np.nan)),
+        *({"hardening_film": 5e-6, "hardening_sharpness": x} for x in (0.0, -1.0, np.inf, np.nan)),
+    ):
+        contact = contact_of(**changes)
+        assert np.isnan(contact.area).all() and np.isnan(contact.dry_area), changes
+        curve = drying_curve(
+            [0.0, 100.0, 1e4, np.inf],
+            30.0,
+            initial_film=90e-6,
+            evaporation_rate=1.743e-7,
+            contact=contact,
+            frictional_shear_stress=STRESS,
+            nominal_pressure=LOAD,
+        )
+        assert all(np.isnan(part).all() for part in curve), changes
+    with pytest.raises(InputError, match="closure is"):
+        contact_of(closure="sharp")
+
+
+CONTACT = FilmContact(
+    film=np.array([1e-7, 4e-6, 1e-5]), area=np.array([8e-4, 1e-3, 6e-4]), dry_area=np.array(1e-4)
+)
+
+
+def dried(
+    time, contact=CONTACT, stress=STRESS, load=LOAD, wetting=30.0, film=90e-6, rate=1.743e-7, spread=2e-7
+):
+    return drying_curve(
+        time,
+        wetting,
+        initial_film=film,
+        evaporation_rate=rate,
+        contact=contact,
+        frictional_shear_stress=stress,
+        nominal_pressure=load,
+        film_spread=spread,
+    )
+
+
+def test_time_goes_on_for_ever():
+    curve = dried([-np.inf, np.inf])
+    friction = friction_coefficient(STRESS, CONTACT.dry_area, nominal_pressure=LOAD)
+    np.testing.assert_array_equal(curve.friction_coefficient, friction)
+    np.testing.assert_array_equal([*curve.film_thickness, *curve.flooded_share], 0.0)
+    np.testing.assert_array_equal(curve.dry_share, 1.0)
+    # nothing evaporates, or there is no end of water: flooded as on the first day
+    flooded = friction_coefficient(STRESS, CONTACT.area[-1], nominal_pressure=LOAD)
+    for changes in ({"rate": 0.0}, {"film": np.inf}):
+        curve = dried([0.0, 30.0, 1e9], **changes)
+        np.testing.assert_array_equal(curve.friction_coefficient, [friction, flooded, flooded])
+        np.testing.assert_array_equal(curve.flooded_share, [0.0, 1.0, 1.0])
+        assert curve.film_thickness[2] == changes.get("film", 90e-6)
+    assert dried(np.inf, rate=0.0).friction_coefficient == flooded
+    # never wetted
+    np.testing.assert_array_equal(dried([0.0, 1e30], wetting=np.inf).friction_coefficient, friction)
+    assert dried(30.0, film=0.0, spread=0.0).friction_coefficient == friction
+    assert dried(30.0, film=0.0, spread=0.0).film_thickness < 1e-12
+
+
+def test_drying_with_impossible_parameters_is_nan_as_a_whole():
+    for changes in (
+        *({name: x} for name in ("film", "rate", "spread") for x in (-1e-9, np.nan)),
+        *({name: np.inf} for name in ("rate", "spread")),
+        {"stress": -1.0}, {"load": 0.0}, {"load": -1.0}, {"wetting": np.nan}, {"stress": np.nan},
+    ):  # fmt: skip
+        assert all(np.isnan(part).all() for part in dried([0.0, 30.0, 600.0, np.inf], **changes)), changes
+    assert np.isnan(dried(np.nan).friction_coefficient)
+    for spread in (-1.0, np.inf, np.nan):
+        assert np.isnan(CONTACT.average(np.array([1e-6, 1e-3]), np.array(spread))).all()
+
+
+def features(contact=CONTACT, stress=STRESS, load=LOAD, wetting=30.0, film=90e-6, rate=1.743e-7, spread=2e-7):
+    return drying_features(
+        wetting,
+        film,
+        evaporation_rate=rate,
+        contact=contact,
+        frictional_shear_stress=stress,
+        nominal_pressure=load,
+        film_spread=spread,
+    )
+
+
+def test_features_at_their_ends():
+    found = features(rate=0.0)
+    assert np.isnan([found.peak_time, found.peak_friction, found.peak_width, found.dry_time]).all()
+    assert (
+        found.wet_plateau
+        == features().wet_plateau
+        == friction_coefficient(STRESS, 6e-4, nominal_pressure=LOAD)
+    )
+    assert found.dry_friction == friction_coefficient(STRESS, 1e-4, nominal_pressure=LOAD)
+    assert features(film=0.0).dry_time == 30.0
+    even, nearly = features(spread=0.0), features(spread=1e-11)
+    np.testing.assert_allclose(even, nearly, rtol=1e-4)
+    assert even.peak_friction == pytest.approx(
+        friction_coefficient(STRESS, 1e-3, nominal_pressure=LOAD), rel=1e-5
+    )
+    assert even.peak_time == pytest.approx(30 + 86e-6 / 1.743e-7, rel=1e-6)
+    # so uneven that dry skin is under all films: no peak
+    assert np.isnan(features(spread=1e30).peak_time)
+    for changes in (
+        *({name: x} for name in ("film", "rate", "spread") for x in (-1e-9, np.nan, np.inf)),
+        {"wetting": np.nan},
+    ):
+        assert np.isnan(features(**changes)).all(), changes
+    for changes in ({"stress": -1.0}, {"load": 0.0}, {"load": -1.0}):
+        found = features(**changes)
+        assert np.isnan([found.peak_friction, found.wet_plateau, found.dry_friction]).all()
+    many = features(wetting=np.array([0.0, 30.0]))
+    assert all(part.shape == (2,) for part in many)
+    np.testing.assert_array_equal([part[1] for part in many], features())
+
+
+def test_empty_batches_are_empty():
+    nobody = LayeredSkin(
+        young_modulus_layer=NONE,
+        young_modulus_bulk=20e3,
+        poisson_ratio_layer=0.5,
+        poisson_ratio_bulk=0.5,
+        layer_thickness=20e-6,
+    )
+    for more in ({}, {"closure": "sharp"}, {"hardening_film": 5e-6}):
+        for contact in (contact_of(NONE, **more), contact_of(skin=nobody, **more)):
+            assert contact.film.shape == contact.area.shape == (0, 256) and contact.dry_area.shape == (0,)
+            assert contact.average(np.empty((0, 3)), NONE)[0].shape == (0, 3)
+            assert features(contact).peak_time.shape == (0,)
+    assert all(part.shape == (0,) for part in dried(NONE))
+    assert all(part.shape == (0, 2) for part in dried([0.0, 1.0], wetting=NONE))
+    assert all(part.shape == (0,) for part in features(wetting=NONE))
+    assert (
+        evaporation_rate(surface_temperature=NONE, air_temperature=300.0, relative_humidity=0.5).shape
+        == film_of_droplet(NONE, 1.0, contact_width=1.0).shape
+        == (0,)
+    )
+
+
+def test_evaporation_at_its_ends():
+    # saturated air as warm as the skin takes up nothing, dry air most; on colder skin water condenses
+    assert (
+        evaporation_rate(surface_temperature=300.0, air_temperature=300.0, relative_humidity=1.0) == 0.0
+        and evaporation_rate(surface_temperature=273.15, air_temperature=273.15, relative_humidity=1.0) == 0.0
+    )
+    assert (
+        evaporation_rate(surface_temperature=273.15, air_temperature=300.0, relative_humidity=1.0)
+        < 0
+        < evaporation_rate(surface_temperature=300.0, air_temperature=300.0, relative_humidity=0.0)
+    )
+    assert evaporation_rate_from_pressures(0.0, 0.0) == 0.0
+    assert np.isnan(
+        evaporation_rate(
+            surface_temperature=300.0, air_temperature=300.0, relative_humidity=[-1e-9, 1 + 1e-12, np.nan]
+        )
+    ).all()
+    assert (
+        film_of_droplet(0.0, 0.08, contact_width=0.008) == 0.0
+        and film_of_droplet(1e-9, np.inf, contact_width=0.008) == 0.0
+    )
+    assert np.isnan(
+        film_of_droplet([-1e-9, 1e-9, 1e-9], [1.0, 0.0, 1.0], contact_width=[1.0, 1.0, 0.0])
+    ).all()
