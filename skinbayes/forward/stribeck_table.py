@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.emulation import Stored, Unfinished, cached
 from skinbayes.forward.base import Inputs, Progress, Ranges, Tables
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
@@ -17,7 +18,6 @@ from skinbayes.forward.stribeck_direct import (
     limit_of,
     speed_viscosity_product_of,
 )
-from skinbayes.forward.table_cache import Stored, Unfinished, cached
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
     LARGE_STRAIN,

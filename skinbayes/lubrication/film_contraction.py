@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.emulation.chebyshev import summed
 from skinbayes.lubrication._uniform_spline import (
     cell_of,
     cubic_slopes,
@@ -171,38 +172,14 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     Returns
     -------
     films : `ContractedFilms`; the parameters outside the table are taken as those of its middle, and marked
-
-    Notes
-    -----
-    Axes that are the same in all rows of a vector come first. Every vector has matrix products of its own, of the same
-    shapes whatever the batch, so that its numbers do not depend on the others.
     """
     axes = table.axes
-    vectors = log_parameters[0].shape[0]
     inside = axes.contains(log_parameters)
     columns = ANCHORS + outputs * (table.speeds + 2)
-    coordinates = axes.coordinates(log_parameters)
-    common = [place for place, part in enumerate(coordinates) if part.shape[1] == 1]
-    rows = [place for place, part in enumerate(coordinates) if part.shape[1] != 1]
-    coefficients = table.coefficients[..., :columns]
-    order = common + rows
-    if order != sorted(order):
-        coefficients = np.ascontiguousarray(np.transpose(coefficients, (*order, len(order))))
-    counts = axes.counts
     held = [
-        np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in coordinates
+        np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in axes.coordinates(log_parameters)
     ]  # nan fails the comparison too
-    in_common = int(np.prod([counts[place] for place in common], dtype=int))
-    block = coefficients.reshape(in_common, -1, columns)
-    matrix = block[:, 0] if block.shape[1] == 1 else np.ascontiguousarray(block).reshape(in_common, -1)
-    weights = _weights([held[place] for place in common], [counts[place] for place in common], vectors, 1)
-    found = np.matmul(weights, matrix)  # (B, 1, rows' nodes × columns)
-    if rows:
-        number = coordinates[rows[0]].shape[1]
-        weights = _weights(
-            [held[place] for place in rows], [counts[place] for place in rows], vectors, number
-        )
-        found = np.matmul(weights, found.reshape(vectors, found.shape[-1] // columns, columns))
+    found = summed(table.coefficients[..., :columns], held, len(log_parameters[0]))
     flat = found.reshape(-1)
     start = np.arange(0, flat.size, columns).reshape(found.shape[:2])
     return ContractedFilms(
@@ -215,18 +192,3 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
         film_scales(log_parameters, table.poisson_ratio_bulk),
         inside,
     )
-
-
-def _weights(coordinates: list[FloatArray], counts: list[int], vectors: int, rows: int) -> FloatArray:
-    """Products of Chebyshev polynomials, shape ``(B, rows, product of counts)``."""
-    weights = np.ones((vectors, rows, 1))
-    for coordinate, count in zip(coordinates, counts, strict=True):
-        terms = np.empty((vectors, rows, count))
-        terms[..., 0] = 1.0
-        if count > 1:
-            terms[..., 1] = coordinate
-        for degree in range(2, count):
-            terms[..., degree] = 2 * coordinate * terms[..., degree - 1] - terms[..., degree - 2]
-        outer = weights[..., :, None] * terms[..., None, :]
-        weights = outer.reshape(vectors, rows, weights.shape[-1] * count)
-    return weights

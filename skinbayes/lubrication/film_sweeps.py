@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -212,7 +212,3 @@ def ball_at(surface: Surface, material: Material, log_parameters: FloatArray) ->
         float(cylinder.load_per_length),
         modulus,
     )
-
-
-Progress = Callable[[int, int], None]
-"""Told how many of how many sweeps are done."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.emulation.stored import from_arrays, to_arrays
 from skinbayes.errors import InputError
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes
 from skinbayes.lubrication.film_reference import SmoothFilms
@@ -51,27 +52,8 @@ class FilmTable:
 
     def to_arrays(self) -> tuple[dict[str, FloatArray], dict[str, Any]]:
         """Everything as arrays by name, and the rest as numbers and texts that JSON can hold; no objects."""
-        axes = self.axes
-        arrays = {
-            "coefficients": self.coefficients,
-            "smooth_coefficients": self.smooth.coefficients,
-            "held_out": self.held_out,
-            **{f"axes_{name}": getattr(axes, name) for name in _AXES_ARRAYS},
-        }
-        metadata = {
-            "version": VERSION,
-            "axes": list(axes.names),
-            "counts": list(axes.counts),
-            "ended": axes.ended,
-            "side": axes.side,
-            "end_offset": axes.end_offset,
-            "speeds": self.speeds,
-            "smooth_lowest": self.smooth.lowest,
-            "smooth_step": self.smooth.step,
-            "poisson_ratio_bulk": self.poisson_ratio_bulk,
-            "held_out_count": self.held_out_count,
-        }
-        return arrays, metadata
+        arrays, metadata = to_arrays(self)
+        return arrays, {"version": VERSION, **metadata}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], metadata: Mapping[str, Any]) -> FilmTable:
@@ -86,36 +68,11 @@ class FilmTable:
             raise InputError(
                 f"A table of films has version {metadata.get('version')}, but this program reads version {VERSION}."
             )
-        try:
-            parts = {name: np.asarray(array, dtype=np.float64) for name, array in arrays.items()}
-            axes = FilmAxes(
-                names=tuple(metadata["axes"]),
-                ended=int(metadata["ended"]),
-                side=float(metadata["side"]),
-                end_offset=float(metadata["end_offset"]),
-                counts=tuple(int(count) for count in metadata["counts"]),
-                **{name: parts[f"axes_{name}"] for name in _AXES_ARRAYS},
-            )
-            smooth = SmoothFilms(
-                parts["smooth_coefficients"], float(metadata["smooth_lowest"]), float(metadata["smooth_step"])
-            )
-            return cls(
-                axes=axes,
-                coefficients=np.ascontiguousarray(parts["coefficients"]),
-                speeds=int(metadata["speeds"]),
-                smooth=smooth,
-                poisson_ratio_bulk=float(metadata["poisson_ratio_bulk"]),
-                held_out=parts["held_out"],
-                held_out_count=int(metadata["held_out_count"]),
-            )
-        except KeyError as missing:
-            raise InputError(f"A table of films lacks {missing.args[0]}.") from None
+        table: FilmTable = from_arrays(cls, arrays, metadata)
+        return table
 
     def contains(self, **parameters: Any) -> NDArray[np.bool_]:
         """Where the table holds parameters (SI, named as `FILM_PARAMETERS`, broadcast), or balls that are similar."""
         with np.errstate(all="ignore"):
             logs = [np.log(np.asarray(parameters[name], dtype=np.float64)) for name in FILM_PARAMETERS]
         return self.axes.contains(logs)
-
-
-_AXES_ARRAYS = ("combination", "offset", "excluded", "excluded_at", "reference", "low", "high", "end")

@@ -11,12 +11,13 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
+from skinbayes.emulation import Kept, Progress, Tasks
+from skinbayes.emulation.chebyshev import grid_coefficients, summed, zeros
 from skinbayes.lubrication._uniform_spline import spline_coefficients
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_axes, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_reference import smooth_films
-from skinbayes.lubrication.film_solver import Kept, Sweeps
-from skinbayes.lubrication.film_sweeps import Ball, Material, Progress, Surface, ball_at
+from skinbayes.lubrication.film_sweeps import Ball, Material, Surface, ball_at
 from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import tabulated_friction
 from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM
@@ -115,11 +116,13 @@ def build_film_table(
     sweeps = len(places) + len(coarse_places) + checked
     materials = _Materials(surface)
 
-    with Sweeps(processes, sweeps, progress, kept) as solve:
+    with Tasks(processes, sweeps, progress, kept) as solve:
         balls = (materials.ball(axes.representative(place)) for place in coarse_places)
         anchors = solve("anchors", Ball.anchors, balls)
-        anchor_terms = _pad(chebyshev_coefficients(anchors.reshape(*coarse, 2)), axes.counts)
-        at_nodes = _values_at(anchor_terms, places)
+        anchor_terms = grid_coefficients(anchors.reshape(*coarse, 2), ends=False)
+        at_nodes = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
+        more = [(0, count - size) for count, size in zip(axes.counts, coarse, strict=True)]
+        anchor_terms = np.pad(anchor_terms, [*more, (0, 0)])
 
         grid = np.linspace(SLOWEST, FASTEST, speeds)
         numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
@@ -131,7 +134,7 @@ def build_film_table(
         splines = spline_coefficients(outputs)
         # at the last speeds the ball is smooth to 1e-4: exactly so from there on
         splines[:, (0, 2, 3, 4), -3:] = 0.0
-        terms = chebyshev_coefficients(splines.reshape(*axes.counts, -1))
+        terms = grid_coefficients(splines.reshape(*axes.counts, -1), ends=False)
         table = FilmTable(
             axes=axes,
             coefficients=np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
@@ -148,41 +151,10 @@ def build_film_table(
         )
 
 
-def chebyshev_coefficients(values: FloatArray) -> FloatArray:
-    """Coefficients along all axes but the last, from values at `chebyshev_nodes`."""
-    for axis in range(values.ndim - 1):
-        count = values.shape[axis]
-        angle = np.pi * (np.arange(count) + 0.5) / count
-        transform = np.cos(np.arange(count)[:, None] * angle) * 2 / count
-        transform[0] /= 2
-        values = np.moveaxis(np.tensordot(transform, values, axes=(1, axis)), 0, axis)
-    return np.ascontiguousarray(values)
-
-
-def chebyshev_nodes(count: int) -> FloatArray:
-    """Zeros of the Chebyshev polynomial of degree ``count``, −1 … 1, dimensionless."""
-    return np.asarray(np.cos(np.pi * (np.arange(count) + 0.5) / count))
-
-
 def _nodes_of(counts: tuple[int, ...]) -> FloatArray:
     """All combinations of the nodes, shape ``(M, A)``."""
-    nodes = list(product(*(chebyshev_nodes(count).tolist() for count in counts)))
+    nodes = list(product(*(zeros(count).tolist() for count in counts)))
     return np.array(nodes).reshape(len(nodes), len(counts))
-
-
-def _pad(terms: FloatArray, counts: tuple[int, ...]) -> FloatArray:
-    return np.pad(
-        terms, [(0, count - size) for count, size in zip(counts, terms.shape[:-1], strict=True)] + [(0, 0)]
-    )
-
-
-def _values_at(terms: FloatArray, places: FloatArray) -> FloatArray:
-    """Values of Chebyshev series at places of shape ``(M, A)``, shape ``(M, columns)``."""
-    values = np.broadcast_to(terms, (len(places), *terms.shape))
-    for axis in range(places.shape[1]):
-        weights = np.cos(np.arange(terms.shape[axis]) * np.arccos(places[:, axis, None]))
-        values = np.einsum("mk,mk...->m...", weights, values)
-    return values
 
 
 class _Materials:
@@ -208,7 +180,7 @@ def _check(
     table: FilmTable,
     materials: _Materials,
     count: int,
-    solve: Sweeps,
+    solve: Tasks,
     largest_strain: float,
 ) -> FloatArray:
     """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""

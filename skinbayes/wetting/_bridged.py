@@ -10,7 +10,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import mean_separation
-from skinbayes.wetting._chebyshev import lobatto
+from skinbayes.emulation.chebyshev import lobatto
 from skinbayes.wetting._curve import Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._types import BoolArray, IndexArray

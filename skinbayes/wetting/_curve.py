@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.wetting._chebyshev import clenshaw, coefficients, lobatto, series
+from skinbayes.emulation.chebyshev import clenshaw, coefficients, lobatto, series
 from skinbayes.wetting._family import GapFamily, gap_family
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._roots import smallest_root

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.wetting._chebyshev import coefficients, lobatto, polynomials
+from skinbayes.emulation.chebyshev import coefficients, lobatto, polynomials, slopes
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._mixture import Filled, Mixture, cover, fill, folded_mean
 from skinbayes.wetting._types import IndexArray
@@ -45,8 +45,8 @@ class GapFamily(NamedTuple):
 
     def _basis(self, log_pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
         t = 2 * (log_pressure - self.start[:, None]) / self.span[:, None] - 1
-        values, slopes = polynomials(t, self.parts.shape[1])
-        return values, slopes * (2 / self.span)[:, None, None]
+        basis = polynomials(t, self.parts.shape[1])
+        return basis, basis[..., :-1] @ slopes(self.parts.shape[1]) * (2 / self.span)[:, None, None]
 
     def at(self, log_pressure: FloatArray) -> tuple[Mixture, Mixture]:
         """Distributions, and their derivatives along ln p, at ln p of shape ``(B, F)``; shapes are ``(B F, n)``."""

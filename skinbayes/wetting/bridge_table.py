@@ -17,9 +17,9 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import LayeredSkin, mean_separation
+from skinbayes.emulation.chebyshev import coefficients, lobatto, polynomials, values_at_nodes
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
-from skinbayes.wetting._chebyshev import coefficients, lobatto, polynomials, values_at_nodes
 from skinbayes.wetting._curve import REFERENCE, TERMS, Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._types import BoolArray
@@ -81,7 +81,7 @@ class BridgeTable:
         weight = np.ones((pressure.size, 1))
         for name, count in self.counts.items():
             t = 2 * (groups[name] - self.low[name]) / (self.high[name] - self.low[name]) - 1
-            basis = polynomials(t, count)[0]
+            basis = polynomials(t, count)
             weight = (weight[:, :, None] * basis[:, None, :]).reshape(pressure.size, -1)
         # one product for each member, contiguous: a product of all rows at once may round differently
         found = (np.ascontiguousarray(weight)[:, None, :] @ self.parts)[:, 0, :]

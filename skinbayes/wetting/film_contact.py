@@ -16,11 +16,11 @@ from skinbayes.contact import (
     twice_stress_variance,
 )
 from skinbayes.contact.gaps import CLOSURES
+from skinbayes.emulation.chebyshev import coefficients, lobatto, series, values_between
 from skinbayes.errors import InputError
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._bridged import Bridged
-from skinbayes.wetting._chebyshev import coefficients, lobatto, series, values_between
 from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
 from skinbayes.wetting._types import BoolArray
 from skinbayes.wetting._uneven import uneven_average

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skinbayes.forward import table_cache
-from skinbayes.forward.table_cache import FOLDER, Unfinished, cache_folder, cached
+from skinbayes.emulation import FOLDER, Unfinished, cache_folder, cached
+from skinbayes.emulation import cache as table_cache
 
 
 @pytest.fixture

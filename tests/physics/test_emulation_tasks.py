@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from small_film_tables import RANGES
 
+from skinbayes.emulation import Tasks
 from skinbayes.lubrication import FilmTable, build_film_table
-from skinbayes.lubrication.film_solver import Sweeps
 from skinbayes.roughness import named_surface
 
 COUNTS = {"young_modulus_bulk": 2, "rms_height": 2, "normal_force": 2}
@@ -48,7 +48,7 @@ def small(kept: Memory | None = None, count: list[int] | None = None) -> FilmTab
 
 @pytest.mark.parametrize("patience", [0, 9, 18])
 def test_a_stopped_build_gives_the_same_table(patience: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skinbayes.lubrication.film_solver._SAVED_EVERY", 0.0)
+    monkeypatch.setattr("skinbayes.emulation.tasks._SAVED_EVERY", 0.0)
     whole = small().to_arrays()
     memory = Memory(patience)
     with pytest.raises(KeyboardInterrupt):
@@ -73,7 +73,7 @@ def ends_in_a_worker(value: float) -> float:
 
 
 def test_results_come_in_order_from_processes() -> None:
-    with Sweeps(2, 20) as solve:
+    with Tasks(2, 20) as solve:
         assert solve("a", negative, range(10)).tolist() == [-i for i in range(10)]
         assert solve("b", negative, range(10, 20)).tolist() == [-i for i in range(10, 20)]
 
@@ -81,16 +81,16 @@ def test_results_come_in_order_from_processes() -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_a_worker_that_is_killed_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TEST_PARENT", str(os.getpid()))
-    with Sweeps(2, 20) as solve:
+    with Tasks(2, 20) as solve:
         assert solve("a", ends_in_a_worker, range(20)).tolist() == [-i for i in range(20)]
 
 
 PARENT = """
 import time
-from skinbayes.lubrication.film_solver import Sweeps
+from skinbayes.emulation import Tasks
 
 if __name__ == "__main__":
-    with Sweeps(2, 2) as solve:
+    with Tasks(2, 2) as solve:
         print("started", flush=True)
         solve("a", time.sleep, [300.0] * 8)
 """

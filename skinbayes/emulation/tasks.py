@@ -1,4 +1,4 @@
-"""Many sweeps solved here or in other processes, with what is done kept on the way."""
+"""Many solutions computed here or in other processes, with what is done kept on the way."""
 
 from __future__ import annotations
 
@@ -11,14 +11,22 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from multiprocessing import connection, get_context, parent_process
+from pickle import PicklingError
 from typing import Any, Protocol
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.lubrication.film_sweeps import Progress
+from skinbayes.emulation.box import Places
 
 _SAVED_EVERY = 2.0  # seconds
+
+Progress = Callable[[int, int], None]
+"""Told how many of how many steps are done."""
+
+
+_UNSHARED = (BrokenProcessPool, PicklingError, AttributeError, TypeError)
+"""A process was ended from outside, perhaps for want of memory, or cannot be given the function: go on without."""
 
 
 class Kept(Protocol):
@@ -31,26 +39,30 @@ class Kept(Protocol):
         """Keep these arrays instead of those kept before."""
 
 
-class Sweeps:
+class Tasks:
     """Apply functions to many arguments, in order, with ``processes`` processes; what is kept from before is not done again.
 
     Parameters
     ----------
-    processes : how many solve at once, dimensionless
-    total : number of sweeps of all stages, dimensionless, for ``progress``
-    progress : told the number of sweeps that are done and of all
+    processes : how many solve at once
+    total : number of solutions of all stages, for ``progress``; None counts each stage by itself
+    progress : told the number of solutions that are done and of all
     kept : where results of the stages are kept
     """
 
     def __init__(
-        self, processes: int, total: int, progress: Progress | None = None, kept: Kept | None = None
+        self,
+        processes: int = 1,
+        total: int | None = None,
+        progress: Progress | None = None,
+        kept: Kept | None = None,
     ) -> None:
         self._pool = _pool(processes) if processes > 1 else None
         self._total, self._progress, self._kept = total, progress, kept
         self._stages: dict[str, FloatArray] = dict(kept.load()) if kept is not None else {}
         self._done = 0
 
-    def __enter__(self) -> Sweeps:
+    def __enter__(self) -> Tasks:
         return self
 
     def __exit__(self, *what: object) -> None:
@@ -63,6 +75,8 @@ class Sweeps:
         """
         rows = list(self._stages.get(stage, ()))
         todo = list(islice(arguments, len(rows), None))
+        if self._total is None:
+            self._done, self._stage = 0, len(rows) + len(todo)
         self._say(len(rows))
         saved = time.monotonic()
         try:
@@ -76,6 +90,16 @@ class Sweeps:
             self._save(stage, rows)
         return self._stages[stage].copy()  # callers go on computing in it
 
+    def at(self, stage: str, solve: Callable[[Places], FloatArray], places: Places, block: int) -> FloatArray:
+        """Solutions at M places, shape ``(M, columns)``, at most ``block`` of them at a time."""
+        total = max(len(x) for x in places.values())
+        parts = -(-total // block)
+        # blocks of one size, to be kept as one array: the last place may come twice
+        chosen = np.minimum(np.arange(parts * -(-total // parts)), total - 1).reshape(parts, -1)
+        blocks = ({n: x[rows] if len(x) > 1 else x for n, x in places.items()} for rows in chosen)
+        found = self(stage, solve, blocks)
+        return np.asarray(found.reshape(chosen.size, -1)[:total])
+
     def _results(self, function: Callable[[Any], Any], todo: list[Any]) -> Iterator[Any]:
         done = 0
         if self._pool is not None:
@@ -84,16 +108,14 @@ class Sweeps:
                     yield found
                     done += 1
                 return
-            except (
-                BrokenProcessPool
-            ):  # a process was ended from outside, perhaps for want of memory: go on without
+            except _UNSHARED:
                 self._end_pool()
         yield from map(function, todo[done:])
 
     def _say(self, count: int) -> None:
         self._done += count
         if self._progress is not None and count:
-            self._progress(self._done, self._total)
+            self._progress(self._done, self._total or self._stage)
 
     def _save(self, stage: str, rows: list[FloatArray]) -> None:
         if rows:

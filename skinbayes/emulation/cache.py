@@ -99,7 +99,7 @@ def cached(kind: str, key: Mapping[str, Any], build: Callable[[Unfinished], Stor
     return found
 
 
-_MAGIC = b"skinbayes table 2\n"
+_MAGIC = b"skinbayes table 3\n"
 _DIGEST = hashlib.sha256().digest_size
 _LARGEST = 2**30  # bytes; a table has some millions
 _ABANDONED = 86_400.0  # seconds after which a file that was never finished is removed

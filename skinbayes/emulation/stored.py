@@ -1,0 +1,44 @@
+"""Frozen objects of arrays, numbers and texts as arrays by name and what JSON can hold, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, get_origin, get_type_hints
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
+
+
+def to_arrays(table: Any) -> tuple[dict[str, FloatArray], dict[str, Any]]:
+    """The fields of a dataclass, those of dataclasses inside it under ``field_`` names: arrays, and the rest."""
+    arrays: dict[str, FloatArray] = {}
+    metadata: dict[str, Any] = {}
+    for field in fields(table):
+        value = getattr(table, field.name)
+        if is_dataclass(value):
+            for into, part in zip((arrays, metadata), to_arrays(value), strict=True):
+                into.update({f"{field.name}_{name}": found for name, found in part.items()})
+        elif isinstance(value, np.ndarray):
+            arrays[field.name] = value
+        else:
+            metadata[field.name] = value
+    return arrays, metadata
+
+
+def from_arrays(cls: type, arrays: Mapping[str, Any], metadata: Mapping[str, Any], prefix: str = "") -> Any:
+    """The object that `to_arrays` took apart; `InputError` if something is missing."""
+    found: dict[str, Any] = {}
+    for name, kind in get_type_hints(cls).items():
+        key = f"{prefix}{name}"
+        if is_dataclass(kind) and isinstance(kind, type):
+            found[name] = from_arrays(kind, arrays, metadata, f"{key}_")
+        elif key in arrays:
+            found[name] = np.ascontiguousarray(arrays[key], dtype=np.float64)
+        elif key in metadata:
+            found[name] = tuple(metadata[key]) if get_origin(kind) is tuple else metadata[key]
+        else:
+            raise InputError(f"A {cls.__name__} lacks {name}.")
+    return cls(**found)
