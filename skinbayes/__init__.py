@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "NoiseFamily", "Problem", "Quantity", "__version__", "build_problem",
-           "compare", "load_dataset", "load_fit", "load_problem", "register_forward_model", "register_noise", "register_quantity",
-           "sample"]  # fmt: skip
+           "compare", "emulated", "load_dataset", "load_fit", "load_problem", "register_forward_model", "register_noise",
+           "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
-    from skinbayes.forward import ForwardModel, register_forward_model
+    from skinbayes.forward import ForwardModel, emulated, register_forward_model
     from skinbayes.problem import Problem, build_problem, load_problem
     from skinbayes.statistics import NoiseFamily, register_noise
     from skinbayes.vocabulary import Quantity, register_quantity
@@ -38,6 +38,7 @@ _HOME = {
     "Problem": "skinbayes.problem",
     "build_problem": "skinbayes.problem",
     "compare": "skinbayes.comparison",
+    "emulated": "skinbayes.forward",
     "load_dataset": "skinbayes.files.dataset",
     "load_fit": "skinbayes.fit",
     "load_problem": "skinbayes.problem",

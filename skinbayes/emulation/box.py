@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 from itertools import product
 
 import numpy as np
@@ -47,7 +48,7 @@ class Box:
             (places[name] >= low - _ROUNDING) & (end[name] <= high + _ROUNDING)
             for name, (low, high) in self.ends.items()
         ]
-        return np.asarray(np.logical_and.reduce(inside))
+        return np.asarray(reduce(np.logical_and, inside))
 
     def scaled(self, places: Places) -> list[FloatArray]:
         """Inputs that vary, each from −1 to 1."""

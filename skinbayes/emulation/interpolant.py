@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import prod
 
@@ -44,19 +44,24 @@ class Interpolant:
     def __call__(self, places: Places) -> FloatArray:
         """Values, shape ``(M, columns)``, at places in the box given by all inputs, shape ``(M,)``."""
         size = max(len(x) for x in places.values())
-        scaled = [np.broadcast_to(x, (size,))[:, None] for x in self.box.scaled(places)]
-        return summed(self.parts, scaled, size)[:, 0]
+        return self.of([np.broadcast_to(x, (size,))[:, None] for x in self.box.scaled(places)], size)[:, 0]
+
+    def of(self, scaled: Sequence[FloatArray], vectors: int) -> FloatArray:
+        """Values, shape ``(B, N, columns)``, at inputs that vary, scaled to −1 … 1, of shape ``(B, 1)`` or ``(B, N)`` each."""
+        return summed(self.parts, scaled, vectors)
 
 
-def counts_along(box: Box, solve: Solve, judge: Judge, aim: float) -> dict[str, int] | None:
+def counts_along(
+    box: Box, solve: Solve, judge: Judge, aim: float, tasks: Tasks, block: int = _BLOCK
+) -> dict[str, int] | None:
     """Nodes along each input that varies, enough for the error ``aim`` where the others are in the middle; None if none are."""
     found: dict[str, int] = {}
     for name in box.varying:
         line = box.line(name)
         places = line.whole({name: np.linspace(*box.ends[name], _PLACES + 2)[1:-1]})
-        exact = solve(places)
+        exact = tasks.at(f"along {name}", solve, places, block)
         for count in _COUNTS:
-            table = on_nodes(line, {name: count}, solve)
+            table = on_nodes(line, {name: count}, solve, tasks, block)
             if table is not None and judge(table(places), exact, places) < aim:
                 found[name] = count
                 break
@@ -71,13 +76,14 @@ def refined(
     solve: Solve,
     judge: Judge,
     *,
+    trial: Places,
+    exact: FloatArray,
     worst: float,
     most: int,
-    trials: int,
-    tasks: Tasks | None = None,
+    tasks: Tasks,
     block: int = _BLOCK,
 ) -> Interpolant | None:
-    """An interpolant whose error at random places is below ``worst``, from given numbers of nodes on.
+    """An interpolant whose error at places of a trial is below ``worst``, from given numbers of nodes on.
 
     Parameters
     ----------
@@ -85,9 +91,10 @@ def refined(
     counts : nodes to begin with
     solve : what to interpolate
     judge : its error
+    trial : places that are not used to make it
+    exact : solutions there
     worst : allowed error
     most : solutions, at most, on the nodes of a box
-    trials : number of random places, the same in every call
     tasks : by whom solutions are computed
     block : solutions at a time
 
@@ -95,8 +102,6 @@ def refined(
     -------
     interpolant : None if it needs more nodes than ``most``, or if there is no solution at some of them
     """
-    trial = box.random(trials, seed=0)
-    exact = solve(trial)
     while prod(counts.values()) <= most:
         table = on_nodes(box, counts, solve, tasks, block)
         if table is None:
@@ -108,12 +113,11 @@ def refined(
 
 
 def on_nodes(
-    box: Box, counts: Mapping[str, int], solve: Solve, tasks: Tasks | None = None, block: int = _BLOCK
+    box: Box, counts: Mapping[str, int], solve: Solve, tasks: Tasks, block: int = _BLOCK
 ) -> Interpolant | None:
     """The interpolant with given numbers of nodes; None if some have no solution."""
-    values = (tasks or Tasks()).at(f"nodes {[*counts.items()]}", solve, box.grid(counts), block)
+    values = tasks.at(f"nodes {[*counts.items()]}", solve, box.grid(counts), block)
     if not np.isfinite(values).all():
         return None
-    return Interpolant(
-        box=box, counts=dict(counts), parts=grid_coefficients(values.reshape(*counts.values(), -1))
-    )
+    parts = grid_coefficients(values.reshape(*counts.values(), -1))
+    return Interpolant(box=box, counts=dict(counts), parts=parts)

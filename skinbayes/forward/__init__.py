@@ -12,6 +12,7 @@ from pkgutil import iter_modules
 
 from skinbayes.errors import InputError
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.emulated_model import emulated
 from skinbayes.lubrication import FlowCurve
 from skinbayes.plugins import installed_forward_models
 from skinbayes.vocabulary import QUANTITIES, add_quantity, suggestions
@@ -23,6 +24,7 @@ __all__ = [
     "Inputs",
     "Profile",
     "Tables",
+    "emulated",
     "forward_model",
     "forward_models",
     "register_forward_model",

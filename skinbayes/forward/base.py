@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.lubrication import FlowCurve
 from skinbayes.roughness import TabulatedSpectrum
@@ -23,9 +24,6 @@ Inputs = Mapping[str, FloatArray]
 
 Ranges = Mapping[str, tuple[float, float]]
 """Name of an input to its smallest and largest value over the rows and nearly all of the prior, SI."""
-
-Progress = Callable[[int, int], None]
-"""Called with the number of steps done and their total."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +100,7 @@ class ForwardModel:
     explain : sentences on why predictions are missing (NaN) or doubtful, or None
     flags : ``(inputs, tables) -> {flag: (B, N)}``, true where a prediction is at the edge of what the theory can say, or None
     flag_meanings : what each flag says, a clause
-    prepare : ``(ranges, tables, progress, cores) ->`` the same model with a faster evaluation within ranges, or None
+    prepare : ``(model, ranges, tables, progress, cores) ->`` the same model with a faster evaluation within ranges, or None
     accuracy : a sentence on the error of the evaluation, empty if it is that of the physics below
     costly : True if an evaluation takes so long (a tenth of a millisecond) that fewer walkers are better
     uses_flow_curves : True if flow curves of liquids may stand for ``viscosity``
@@ -130,7 +128,7 @@ class ForwardModel:
     explain: Callable[[Inputs, Tables], list[str]] | None = None
     flags: Callable[[Inputs, Tables], dict[str, NDArray[np.bool_]]] | None = None
     flag_meanings: Mapping[str, str] = field(default_factory=dict)
-    prepare: Callable[[Ranges, Tables, Progress | None, int], ForwardModel] | None = None
+    prepare: Callable[[ForwardModel, Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""
     abscissa: Callable[[Inputs, Tables], FloatArray] | None = None
     costly: bool = False

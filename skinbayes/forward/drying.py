@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -95,7 +94,7 @@ def _timeline(closure: Closure) -> tuple[Profile, ...]:
 
 def drying_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
-    model = ForwardModel(
+    return ForwardModel(
         name="drying",
         summary="friction of skin that is wetted and dries, flooded, held by capillary bridges and dry, against time",
         observables=OBSERVABLES,
@@ -106,6 +105,7 @@ def drying_model(closure: Closure = "gaussian") -> ForwardModel:
         optional=DRYING_DEFAULTS,
         accepted=DRYING_ACCEPTED,
         costly=True,
+        prepare=prepared_drying if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
         explain=_explain,
@@ -116,7 +116,6 @@ def drying_model(closure: Closure = "gaussian") -> ForwardModel:
         blocks=("rms_slope",),
         profiles=(*_timeline(closure), *film_profiles(closure)),
     )
-    return replace(model, prepare=partial(prepared_drying, model=model)) if closure == "gaussian" else model
 
 
 MODEL = drying_model()

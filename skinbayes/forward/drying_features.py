@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -84,7 +83,7 @@ def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
 
 def features_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
-    model = ForwardModel(
+    return ForwardModel(
         name="drying-features",
         summary="time, height and width of the friction peak of drying skin, wet plateau, dry friction and the time it is dry",
         observables=OBSERVABLES,
@@ -95,6 +94,7 @@ def features_model(closure: Closure = "gaussian") -> ForwardModel:
         optional=DRYING_DEFAULTS,
         accepted=DRYING_ACCEPTED,
         costly=True,
+        prepare=prepared_drying if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,
         explain=partial(_explain, closure=closure),
@@ -104,7 +104,6 @@ def features_model(closure: Closure = "gaussian") -> ForwardModel:
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),
     )
-    return replace(model, prepare=partial(prepared_drying, model=model)) if closure == "gaussian" else model
 
 
 MODEL = features_model()

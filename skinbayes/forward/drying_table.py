@@ -9,7 +9,8 @@ from typing import cast
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ForwardModel, Progress, Ranges, Tables
+from skinbayes.emulation import Box, Progress
+from skinbayes.forward.base import ForwardModel, Ranges, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS
 from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
@@ -48,12 +49,11 @@ def table_over(
         load, pull, height=height, spectrum=spectrum, skin=skin, area_correction=inputs["area_correction"]
     )
     depth = float(np.max(load / np.asarray(skin.young_modulus_bulk))) / known["film_floor"][0]
-    low, high = ({name: float(end(x)) for name, x in groups.items()} for end in (np.min, np.max))
-    return bridge_table(low, high, depth=depth, spectrum=tables.spectrum, progress=progress)
+    return bridge_table(Box.around(groups), depth=depth, spectrum=tables.spectrum, progress=progress)
 
 
 def prepared_drying(
-    ranges: Ranges, tables: Tables, progress: Progress | None, cores: int, model: ForwardModel
+    model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
 ) -> ForwardModel:
     """Return a model of drying skin whose evaluation takes a ``table`` with the table for ``ranges``, if there is one."""
     table = table_over(ranges, dict(model.optional), tables, progress)
@@ -63,5 +63,5 @@ def prepared_drying(
         model,
         evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),
         prepare=None,
-        accuracy=f"pressure of bridged skin interpolated to {table.error:.0e} (root mean square)",
+        accuracy=f"pressure of bridged skin interpolated to {table.found.error:.0e} (root mean square)",
     )

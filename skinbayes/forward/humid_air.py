@@ -9,7 +9,6 @@ is the elastic one of Fig. 16.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -188,7 +187,7 @@ def _profiles(closure: Closure) -> tuple[Profile, ...]:
 
 def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
     """Return the forward model with one of the closures of the gap distribution."""
-    model = ForwardModel(
+    return ForwardModel(
         name="humid-air",
         summary="contact and friction of skin in humid air, drawn together by bridges of nanometres, against humidity",
         observables=OBSERVABLES,
@@ -198,6 +197,7 @@ def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
         required=HUMID_AIR_INPUTS,
         optional=HUMID_AIR_DEFAULTS,
         costly=True,
+        prepare=prepared_humid_air if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_humid_air,
         explain=partial(_explain, closure=closure),
@@ -207,9 +207,6 @@ def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
         derived_names=("nominal_pressure", "rms_slope"),
         blocks=("rms_slope",),
         profiles=_profiles(closure),
-    )
-    return (
-        replace(model, prepare=partial(prepared_humid_air, model=model)) if closure == "gaussian" else model
     )
 
 

@@ -10,7 +10,8 @@ from typing import cast
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Progress, Ranges, Tables
+from skinbayes.emulation import Box, Progress
+from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.forward.humid_air_inputs import (
@@ -116,13 +117,11 @@ def pull_over(
     spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
     height = np.broadcast_to(rms_height(spectrum), gap.shape)
     groups = humid_groups(nominal_pressure_of(inputs), gap, height=height, skin=skin)
-    low_ends = {name: float(np.min(value)) for name, value in groups.items()}
-    high_ends = {name: float(np.max(value)) for name, value in groups.items()}
-    high_ends["load"] = float(np.max(groups["load"] + np.log1p(strength)))
+    ends = dict(Box.around(groups).ends)
+    ends["load"] = (ends["load"][0], float(np.max(groups["load"] + np.log1p(strength))))
     one = {name: value[0] for name, value in inputs.items()}
     table = humid_table(
-        low_ends,
-        high_ends,
+        Box(ends),
         spectrum=spectrum_of(one, tables),
         skin=skin_of(one),
         area_correction=one["area_correction"],
@@ -132,7 +131,7 @@ def pull_over(
 
 
 def prepared_humid_air(
-    ranges: Ranges, tables: Tables, progress: Progress | None, cores: int, model: ForwardModel
+    model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
 ) -> ForwardModel:
     """Return a model of skin in humid air whose functions take a ``table`` with the table for ``ranges``, if there is one."""
     table = pull_over(ranges, dict(model.optional), tables, progress)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ForwardModel, Inputs, Profile, Progress, Ranges, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import SKIN_DEFAULTS, SKIN_INPUTS, spectrum_of, validate_contact
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
@@ -50,10 +50,6 @@ def _abscissa(inputs: Inputs, tables: Tables) -> FloatArray:
     return solve(inputs, tables, MODEL.input_names())["speed_viscosity_product"]
 
 
-def _prepare(ranges: Ranges, tables: Tables, progress: Progress | None, cores: int) -> ForwardModel:
-    return prepare(MODEL, ranges, tables, progress, cores)
-
-
 def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     return {"rms_slope": np.asarray(rms_slope(spectrum_of(inputs, tables)))}
 
@@ -84,7 +80,7 @@ MODEL = ForwardModel(
     explain=_explain,
     flags=_flags,
     flag_meanings=FLAGS,
-    prepare=_prepare,
+    prepare=prepare,
     abscissa=_abscissa,
     costly=True,
     uses_flow_curves=True,

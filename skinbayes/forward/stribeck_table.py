@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.emulation import Stored, Unfinished, cached
-from skinbayes.forward.base import Inputs, Progress, Ranges, Tables
+from skinbayes.emulation import Progress, Stored, Unfinished, cached
+from skinbayes.forward.base import Inputs, Ranges, Tables
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     film_flags,

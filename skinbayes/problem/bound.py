@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
-from skinbayes.forward.base import Progress
 from skinbayes.problem.alike import DistinctRows, distinct_rows
 from skinbayes.problem.batches import as_batch, unbatch
 from skinbayes.problem.covariates import apply_covariates, factor_key
@@ -122,7 +122,7 @@ class BoundModel:
         if prepared.prepare is not None and self.observations and self.free:
             with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
                 ranges = input_ranges([p.prior for p in self.free if p.prior], self.inputs)
-                prepared = prepared.prepare(ranges, self.tables, progress, cores)
+                prepared = prepared.prepare(prepared, ranges, self.tables, progress, cores)
         self.__dict__["model"] = prepared
         return prepared
 

@@ -8,16 +8,15 @@ vary span a box, on whose Chebyshev nodes the bridges are solved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from itertools import product
-from math import prod
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import LayeredSkin, mean_separation
-from skinbayes.emulation.chebyshev import coefficients, lobatto, polynomials, values_at_nodes
+from skinbayes.emulation import Box, Interpolant, Places, Progress, Tasks, counts_along, refined
+from skinbayes.emulation.chebyshev import values_at_nodes
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.wetting._curve import REFERENCE, TERMS, Curve, solve_curve
@@ -28,18 +27,13 @@ SURFACE_GROUPS = ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wav
 """Groups of a self-affine spectrum, the wavevectors as logarithms."""
 
 _TERMS = TERMS["gaussian"]
-_COUNTS = (2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 16, 20)
-_PLACES, _TRIALS = 9, 48
+_TRIALS = 48
 # error of p and of the flooded film along one axis, and in the whole box; single solutions are rough to 2e-4
 _AIM, _WORST = 3e-4, 6e-4
 _CUT, _CUTS = 0.05, 16  # by which a box is cut whose corners have no solution
 _TILT = 1 / 3  # exponent of E0/E1 in the load: skins whose pull runs away then lie beyond one value of it
-_WIDEN = 1e-9
-_BLOCK = 64  # skins solved at a time
 _PULL = 1e-5  # m; the pull varies linearly far below it
 _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
-
-Groups = Mapping[str, FloatArray]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -48,44 +42,27 @@ class BridgeTable:
 
     Attributes
     ----------
-    low, high : of each group of `skin_groups`, dimensionless or ln of SI values
-    counts : nodes of each group that varies, dimensionless
+    found : of the groups of `skin_groups`, dimensionless or ln of SI values: the logarithms of the film over the flooded one and
+        of p/p0, as Chebyshev coefficients along z, and ln(ū/h_rms), dimensionless, ``2 terms + 1`` columns. Its error is the
+        root mean square of the relative error of p at given films, or the largest relative error of the flooded film, if
+        that is larger
     depth : how far the curves go, to ``d_K = 0.9 ū [depth ū E1/p0]^(−½)``, 1/m
-    parts : Chebyshev coefficients along z of the logarithms of the film over the flooded one and of p/p0, and ln(ū/h_rms),
-        each expanded in the groups, dimensionless, shape ``(nodes, 2 terms + 1)``
-    error : at random places of the box, root mean square of the relative error of p at given films, or largest relative error
-        of the flooded film, if that is larger; nan if not measured, dimensionless
 
     References
     ----------
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 5, Eqs. 5 to 7).
     """
 
-    low: Mapping[str, float]
-    high: Mapping[str, float]
-    counts: Mapping[str, int]
+    found: Interpolant
     depth: float
-    parts: FloatArray
-    error: float
 
-    def covers(self, groups: Groups) -> BoolArray:
+    def covers(self, groups: Places) -> BoolArray:
         """Tell which members of a flat batch lie in the box, shape ``(B,)``."""
-        inside = [
-            (groups[name] >= self.low[name] - _WIDEN) & (groups[name] <= self.high[name] + _WIDEN)
-            for name in self.low
-        ]
-        return np.asarray(np.logical_and.reduce(inside))
+        return self.found.box.covers(groups)
 
-    def curve(self, groups: Groups, pressure: FloatArray, *, height: FloatArray) -> Curve:
+    def curve(self, groups: Places, pressure: FloatArray, *, height: FloatArray) -> Curve:
         """Curves of skins in the box; pressure, Pa, and rms height, m, have the shape ``(B,)`` of the groups."""
-        weight = np.ones((pressure.size, 1))
-        for name, count in self.counts.items():
-            t = 2 * (groups[name] - self.low[name]) / (self.high[name] - self.low[name]) - 1
-            basis = polynomials(t, count)
-            weight = (weight[:, :, None] * basis[:, None, :]).reshape(pressure.size, -1)
-        # one product for each member, contiguous: a product of all rows at once may round differently
-        found = (np.ascontiguousarray(weight)[:, None, :] @ self.parts)[:, 0, :]
-        return _curve_of(found, _end(self.depth, found[:, -1], _pressing(groups)), pressure, height)
+        return _curve_of(self.found(groups), self.depth, groups, pressure, height)
 
 
 def skin_groups(
@@ -146,24 +123,22 @@ def skin_groups(
 
 
 def bridge_table(
-    low: Mapping[str, float],
-    high: Mapping[str, float],
+    box: Box,
     *,
     depth: float,
     spectrum: PowerSpectrum | None = None,
     most: int = 4000,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> BridgeTable | None:
     """Solve bridges on the nodes of a box of groups, for many skins to be interpolated (Eqs. 5 to 7 of the paper).
 
     Parameters
     ----------
-    low : lower end of each group of `skin_groups`, dimensionless or ln of SI values
-    high : upper end of each group; equal to the lower one where it does not vary, dimensionless or ln of SI values
+    box : of the groups of `skin_groups`, dimensionless or ln of SI values
     depth : p0/E1 over the thinnest film that will be asked for, 1/m
     spectrum : tabulated spectrum, C in m^4, if the surface is one; None is a self-affine one
     most : skins to solve at most, dimensionless
-    progress : called with the number of skins solved and their total, dimensionless
+    progress : called with the number of parts done and their total
 
     Returns
     -------
@@ -172,9 +147,9 @@ def bridge_table(
 
     Notes
     -----
-    Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.error``; 99 % of them within five times
-    that, the worst towards the flooded film, where the pull sets in. The solutions themselves are rough at the level of a few
-    1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 600 skins.
+    Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.found.error``; 99 % of them within five
+    times that, the worst towards the flooded film, where the pull sets in. The solutions themselves are rough at the level of a
+    few 1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 600 skins.
 
     References
     ----------
@@ -184,103 +159,44 @@ def bridge_table(
     --------
     Layers from 6 to 8 MPa, down to a film of about 0.1 µm:
 
+    >>> from skinbayes.emulation import Box
     >>> from skinbayes.roughness import named_surface
     >>> skins = LayeredSkin(young_modulus_layer=np.array([6e6, 8e6]), young_modulus_bulk=20e3,
     ...     layer_thickness=20e-6)
     >>> groups = skin_groups(np.full(2, 6830.0), np.full(2, 0.0845), height=np.full(2, 22.4e-6),
     ...     spectrum=named_surface("paper_reference"), skin=skins, area_correction=np.array(0.42))
-    >>> low, high = ({name: end(x) for name, x in groups.items()} for end in (np.min, np.max))
-    >>> table = bridge_table(low, high, depth=6830.0 / 20e3 / 1e-7)
-    >>> print(dict(table.counts), table.error < 1e-3)
+    >>> table = bridge_table(Box.around(groups), depth=6830.0 / 20e3 / 1e-7)
+    >>> print(dict(table.found.counts), table.found.error < 1e-3)
     {'stiffness': 2, 'load': 3} True
     """
-    low, high = dict(low), dict(high)
+    solve = partial(_solve, depth=depth, spectrum=spectrum)
+    judge = partial(_error, depth=depth)
     for _ in range(_CUTS):
-        counts = _counts(low, high, depth, spectrum) if _solvable(low, high, depth, spectrum) else None
-        if counts is not None:
+        corners = box.corners()
+        solvable = corners is not None and np.isfinite(solve(corners)).all()
+        if solvable and (counts := counts_along(box, solve, judge, _AIM, Tasks())) is not None:
             break
         # the pull runs away under large loads
-        high["load"] -= _CUT * (high["load"] - low["load"])
+        low, high = box.ends["load"]
+        box = Box({**box.ends, "load": (low, high - _CUT * (high - low))})
     else:
         return None
-    rng = np.random.default_rng(0)
-    trial = {name: rng.uniform(low[name], high[name], _TRIALS) for name in counts}
-    sound = _solve({**_fields(low), **trial}, depth, spectrum)
-    while prod(counts.values()) <= most:
-        whole = _build(low, high, counts, depth, spectrum, progress)
-        if whole is None:
-            return None
-        error = _error(whole, trial, sound)
-        if error < _WORST:
-            return replace(whole, error=error)
-        counts = {name: count + 1 for name, count in counts.items()}
-    return None
-
-
-def _counts(
-    low: Mapping[str, float], high: Mapping[str, float], depth: float, spectrum: PowerSpectrum | None
-) -> dict[str, int] | None:
-    """Nodes along each group that varies, enough where the others are in the middle; None if no number is."""
-    middle = {name: (low[name] + high[name]) / 2 for name in low}
-    counts: dict[str, int] = {}
-    for name in (name for name in low if high[name] > low[name]):
-        first, last = ({**middle, name: ends[name]} for ends in (low, high))
-        places = {name: np.linspace(low[name], high[name], _PLACES + 2)[1:-1]}
-        sound = _solve({**_fields(middle), **places}, depth, spectrum)
-        for count in _COUNTS:
-            table = _build(first, last, {name: count}, depth, spectrum)
-            if table is not None and _error(table, places, sound) < _AIM:
-                break
-        else:
-            return None
-        counts[name] = count
-    return counts
-
-
-def _fields(values: Mapping[str, float]) -> dict[str, FloatArray]:
-    return {name: np.array([value]) for name, value in values.items()}
-
-
-def _build(
-    low: Mapping[str, float],
-    high: Mapping[str, float],
-    counts: Mapping[str, int],
-    depth: float,
-    spectrum: PowerSpectrum | None,
-    progress: Callable[[int, int], None] | None = None,
-) -> BridgeTable | None:
-    """The table with given numbers of nodes, its error left open; None if some nodes have no solution."""
-    total = prod(counts.values())
-    nodes = [low[name] + (high[name] - low[name]) * lobatto(count) for name, count in counts.items()]
-    grid = dict(zip(counts, (x.reshape(-1) for x in np.meshgrid(*nodes, indexing="ij")), strict=True))
-    values = np.empty((total, 2 * _TERMS + 1))
-    for first in range(0, total, _BLOCK):
-        block = slice(first, first + _BLOCK)
-        values[block] = _solve({**_fields(low), **{n: x[block] for n, x in grid.items()}}, depth, spectrum)
-        if progress is not None:
-            progress(min(first + _BLOCK, total), total)
-    if not np.isfinite(values).all():
-        return None
-    parts = values.reshape(*counts.values(), -1)
-    for i, count in enumerate(counts.values()):
-        moved = np.moveaxis(parts, i, 0)
-        parts = np.moveaxis(coefficients(moved.reshape(1, count, -1)).reshape(moved.shape), 0, i)
-    parts = np.ascontiguousarray(parts.reshape(total, -1))
-    return BridgeTable(
-        low=dict(low), high=dict(high), counts=dict(counts), depth=depth, parts=parts, error=np.nan
+    trial = box.random(_TRIALS, seed=0)
+    found = refined(
+        box,
+        counts,
+        solve,
+        judge,
+        trial=trial,
+        exact=solve(trial),
+        worst=_WORST,
+        most=most,
+        tasks=Tasks(progress=progress),
     )
+    return None if found is None else BridgeTable(found=found, depth=depth)
 
 
-def _solvable(
-    low: Mapping[str, float], high: Mapping[str, float], depth: float, spectrum: PowerSpectrum | None
-) -> bool:
-    """Tell whether all corners of the box have curves."""
-    ends = [sorted({low[name], high[name]}) for name in low]
-    corners = dict(zip(low, np.array(list(product(*ends))).T, strict=True))
-    return bool(np.isfinite(_solve(corners, depth, spectrum)).all())
-
-
-def _pressing(groups: Groups) -> FloatArray:
+def _pressing(groups: Places) -> FloatArray:
     """ln[p0/(E1 h_rms)]."""
     return np.asarray(groups["load"] + _TILT * groups["stiffness"])
 
@@ -290,14 +206,13 @@ def _end(depth: float, log_separation: FloatArray, pressing: FloatArray) -> Floa
     return np.asarray(np.log1p(REFERENCE / 0.9 * np.exp((np.log(depth) + log_separation - pressing) / 2)))
 
 
-def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
+def _error(found: FloatArray, exact: FloatArray, places: Places, depth: float) -> float:
     """Relative error of p, root mean square over places of the box and all films, or the largest of the flooded film, if that is
-    larger; ``exact`` are the coefficients there."""
-    count = len(exact)
-    groups = {n: np.broadcast_to(x, (count,)) for n, x in {**_fields(table.low), **places}.items()}
-    one = np.ones(count)
-    curve = table.curve(groups, one, height=one)
-    sound = _curve_of(exact, curve.end, one, one)
+    larger, of interpolated coefficients."""
+    groups = {name: np.broadcast_to(x, (len(exact),)) for name, x in places.items()}
+    one = np.ones(len(exact))
+    curve = _curve_of(found, depth, groups, one, one)
+    sound = _curve_of(exact, depth, groups, one, one)._replace(end=curve.end)
     # all films but the last of them, which one of the two may not reach, and the vertical rise where the gap is flooded
     z = curve.end[:, None] * np.linspace(0.2, 0.98, 48)
     film = np.exp(sound.along(z)[0])
@@ -307,8 +222,11 @@ def _error(table: BridgeTable, places: Groups, exact: FloatArray) -> float:
     return float(np.fmax(np.sqrt(np.mean(np.square(errors))), flooded))
 
 
-def _curve_of(found: FloatArray, end: FloatArray, pressure: FloatArray, height: FloatArray) -> Curve:
-    """Curves from coefficients as in `BridgeTable`, shape ``(B, 2 terms + 1)``."""
+def _curve_of(
+    found: FloatArray, depth: float, groups: Places, pressure: FloatArray, height: FloatArray
+) -> Curve:
+    """Curves from the columns of a `BridgeTable`, shape ``(B, 2 terms + 1)``."""
+    end = _end(depth, found[:, -1], _pressing(groups))
     separation = height * np.exp(found[:, -1])
     parts = np.stack([found[:, :_TERMS], found[:, _TERMS:-1]], axis=-1)
     parts[:, 0] += np.log(np.stack([separation, pressure], axis=-1))
@@ -316,8 +234,8 @@ def _curve_of(found: FloatArray, end: FloatArray, pressure: FloatArray, height: 
     return Curve(REFERENCE * separation, end, nodes, parts)
 
 
-def _solve(places: Groups, depth: float, spectrum: PowerSpectrum | None) -> FloatArray:
-    """Chebyshev coefficients along z, and ln(ū/h_rms), as in `BridgeTable`, of skins with the groups ``places``."""
+def _solve(places: Places, depth: float, spectrum: PowerSpectrum | None) -> FloatArray:
+    """Columns of a `BridgeTable` for skins with the groups ``places``."""
     curve, load, flooded = _curves(places, depth, spectrum)
     parts = curve.parts[..., :2].copy()
     parts[:, 0] -= np.log(np.stack([flooded, load], axis=-1))
@@ -325,7 +243,7 @@ def _solve(places: Groups, depth: float, spectrum: PowerSpectrum | None) -> Floa
 
 
 def _curves(
-    places: Groups, depth: float, spectrum: PowerSpectrum | None
+    places: Places, depth: float, spectrum: PowerSpectrum | None
 ) -> tuple[Curve, FloatArray, FloatArray]:
     """Curves of skins of some height and modulus with the groups ``places``, their loads, Pa, and flooded films, m."""
     count = max(len(x) for x in places.values())

@@ -9,7 +9,7 @@ equation in ln p.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from scipy.special import ndtr
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import LayeredSkin
+from skinbayes.emulation import Box, Places, Progress, Tasks
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.wetting._falling import falling_root
@@ -31,10 +32,7 @@ _FIRST_RUNGS = 3
 _CLOSE = 1e-12  # of ln p
 _LITTLE = 1e-12  # of the area, added to F so that its logarithm has a floor
 _BLOCK = 64  # skins at a time
-_WIDEN = 1e-9  # of the box, for rounding
 _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
-
-Groups = Mapping[str, FloatArray]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,7 +41,7 @@ class HumidTable:
 
     Attributes
     ----------
-    low, high : ends of the groups of `humid_groups`, dimensionless or ln of SI values
+    box : of the groups of `humid_groups`, dimensionless or ln of SI values; its loads reach to those with the whole pull
     axes : group to its first node and number of nodes, for those groups that vary, dimensionless
     coefficients : of the cubic spline of ln F on the grid of ``axes``, dimensionless
 
@@ -52,21 +50,15 @@ class HumidTable:
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Appendix A).
     """
 
-    low: Mapping[str, float]
-    high: Mapping[str, float]
+    box: Box
     axes: Mapping[str, tuple[float, int]]
     coefficients: FloatArray
 
-    def covers(self, groups: Groups, strength: FloatArray) -> BoolArray:
+    def covers(self, groups: Places, strength: FloatArray) -> BoolArray:
         """Tell which members of a flat batch lie in the box up to the whole pull p_K/p0 = ``strength``, shape ``(M,)``."""
-        ends = {**groups, "load": groups["load"] + np.log1p(strength)}
-        inside = [
-            (groups[name] >= low - _WIDEN) & (ends[name] <= self.high[name] + _WIDEN)
-            for name, low in self.low.items()
-        ]
-        return np.asarray(np.logical_and.reduce(inside))
+        return self.box.covers(groups, {**groups, "load": groups["load"] + np.log1p(strength)})
 
-    def share(self, groups: Groups) -> FloatArray:
+    def share(self, groups: Places) -> FloatArray:
         """F, dimensionless, of the shape of the groups; whatever the spline has outside the box."""
         places = [(groups[name] - start) / _STEPS[name] for name, (start, _) in self.axes.items()]
         shape = np.broadcast_shapes(*(np.shape(x) for x in places))
@@ -79,7 +71,7 @@ class HumidTable:
         )
         return np.asarray(np.exp(found.reshape(shape)) - _LITTLE)
 
-    def log_pressure_ratio(self, groups: Groups, strength: FloatArray) -> FloatArray:
+    def log_pressure_ratio(self, groups: Places, strength: FloatArray) -> FloatArray:
         """Smallest root of ``p = p0 + p_K F(d_K; p)`` as ln p/p0, dimensionless.
 
         Parameters
@@ -92,7 +84,7 @@ class HumidTable:
         rise : ln p/p0, dimensionless, shape ``(M,)``
         """
 
-        def excess(x: FloatArray, at: Groups, pull: FloatArray) -> FloatArray:
+        def excess(x: FloatArray, at: Places, pull: FloatArray) -> FloatArray:
             return np.asarray(x - np.log1p(pull * self.share({**at, "load": at["load"] + x})))
 
         low = np.full(strength.shape, np.nan)
@@ -150,26 +142,24 @@ def humid_groups(
 
 
 def humid_table(
-    low: Mapping[str, float],
-    high: Mapping[str, float],
+    box: Box,
     *,
     spectrum: PowerSpectrum,
     skin: LayeredSkin,
     area_correction: FloatArray,
     most: int = 250_000,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> HumidTable | None:
     """Compute the share of bridged gaps on a grid of groups, for many skins to be interpolated (Eq. 7, Appendix A of the paper).
 
     Parameters
     ----------
-    low : lower end of each group of `humid_groups`, dimensionless or ln of SI values
-    high : upper end of each; that of ``load`` with the pull added, dimensionless or ln of SI values
+    box : of the groups of `humid_groups`, dimensionless or ln of SI values, the upper end of ``load`` with the pull added
     spectrum : power spectrum, C in m^4, scalar; its height does not matter
     skin : Poisson ratios, dimensionless, scalar; moduli in Pa and thickness in m do not matter
     area_correction : γ, dimensionless, 0 < γ ≤ 1, scalar
     most : loads of skins to compute at most, dimensionless
-    progress : called with the number of skins computed and their total, dimensionless
+    progress : called with the number of parts done and their total
 
     Returns
     -------
@@ -187,21 +177,22 @@ def humid_table(
 
     Examples
     --------
+    >>> from skinbayes.emulation import Box
     >>> from skinbayes.roughness import named_surface
     >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> groups = humid_groups(np.array([6830.0]), np.array([1e-9]), height=np.array([22.4e-6]), skin=skin)
-    >>> low = {name: float(value[0]) for name, value in groups.items()}
-    >>> high = {**low, "load": low["load"] + 1, "gap": low["gap"] + 1}
-    >>> table = humid_table(low, high, spectrum=named_surface("paper_reference"), skin=skin,
+    >>> ends = {name: (value[0], value[0] + (name in ("load", "gap"))) for name, value in groups.items()}
+    >>> table = humid_table(Box(ends), spectrum=named_surface("paper_reference"), skin=skin,
     ...     area_correction=np.array(0.42))
     >>> print(table.axes["load"][1], f"{table.share(groups)[0]:.3e}")
     14 1.428e-04
     """
     nodes = {}
     for name, step in _STEPS.items():
-        count = int(np.ceil((high[name] - low[name]) / step - 1e-9)) + 1
+        low, high = box.ends[name]
+        count = int(np.ceil((high - low) / step - 1e-9)) + 1
         room = 0 if count == 1 else _ROOM
-        nodes[name] = low[name] + step * np.arange(-room, count + room)
+        nodes[name] = low + step * np.arange(-room, count + room)
     skins = [x.reshape(-1) for x in np.meshgrid(nodes["stiffness"], nodes["layer_thickness"], indexing="ij")]
     total = skins[0].size
     if total * nodes["load"].size > most:
@@ -215,28 +206,26 @@ def humid_table(
     else:
         return None
     pressure, gap = _BULK * _HEIGHT * np.exp(nodes["load"]), _HEIGHT * np.exp(nodes["gap"])
-    values = np.empty((total, pressure.size, gap.size))
-    for first in range(0, total, _BLOCK):
-        block = slice(first, first + _BLOCK)
-        stiffness, thickness = (np.exp(x[block]) for x in skins)
+
+    def spanned(places: Places) -> FloatArray:
+        """F at all loads and gaps, shape ``(M, loads, gaps)``."""
+        stiffness, thickness = np.exp(places["stiffness"]), np.exp(places["layer_thickness"])
         body = replace(
             skin, young_modulus_layer=_BULK * stiffness, young_modulus_bulk=_BULK, layer_thickness=thickness
         )
         source = GapSource(surface, body, area_correction, "gaussian")
         mixture, _ = source.at(np.broadcast_to(pressure, (stiffness.size, pressure.size)))
         place, out = mixture.centre / mixture.width, 1 / mixture.width
-        for i, each in enumerate(gap):
-            # both are lower tails, whose difference keeps its digits
-            below = ndtr(each * out - place) - ndtr(-each * out - place)
-            values[block, :, i] = (mixture.share * below).sum(axis=-1)
-        if progress is not None:
-            progress(min(first + _BLOCK, total), total)
+        # both are lower tails, whose difference keeps its digits
+        below = (ndtr(each * out - place) - ndtr(-each * out - place) for each in gap)
+        return np.stack([(mixture.share * part).sum(axis=-1) for part in below], axis=-1)
+
+    places = dict(zip(("stiffness", "layer_thickness"), skins, strict=True))
+    values = Tasks(progress=progress).at("skins", spanned, places, _BLOCK)
     if not np.isfinite(values).all():
         return None
     shape = [nodes[name].size for name in ("stiffness", "layer_thickness")]
     grid = np.moveaxis(values.reshape(*shape, pressure.size, gap.size), (2, 3), (0, 1))
     axes = {name: (float(x[0]), x.size) for name, x in nodes.items() if x.size > 1}
     log_share = np.log(np.maximum(grid, 0.0) + _LITTLE).reshape([count for _, count in axes.values()])
-    return HumidTable(
-        low=dict(low), high=dict(high), axes=axes, coefficients=spline_filter(log_share, order=3)
-    )
+    return HumidTable(box=box, axes=axes, coefficients=spline_filter(log_share, order=3))

@@ -30,6 +30,15 @@ AFTER = {
         assert np.allclose(problem.predict([1.0])["friction_coefficient"], [0.5, 0.5 + 0.5 * (1 - np.exp(-1))])
         assert problem.check().identifiability is not None
     """,
+    "An emulator": """
+        times = np.geomspace(10.0, 1000.0, 12)
+        problem = sb.build_problem("fading-cream", {"time": times, "friction_coefficient": np.linspace(0.3, 0.5, 12)},
+            parameters={"typical_friction_coefficient": {"lognormal": [0.5, 0.3]}, "fading_time": {"loguniform": [30, 900]}},
+            noise={"family": "lognormal", "noise_scale": 0.05})
+        exact = 0.4 * (1 - 0.5 / (1 + times / 200.0))  # exponentially spread rates
+        assert np.allclose(problem.predict([0.4, 200.0])["friction_coefficient"], exact, rtol=1.1e-3)
+        assert "are interpolated between" in problem.model.accuracy
+    """,
     "A noise family": """
         from scipy import stats
         problem = sb.build_problem("constant", {"friction_coefficient": [0.5, 0.8]},

@@ -38,7 +38,7 @@ MAY_KNOW: dict[str, set[str]] = {
     # where they meet
     "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
-    "problem": {*WORDS, "atomic", "units", "roughness", "statistics", "diagnose", "files", "forward", "version"},
+    "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "statistics", "diagnose", "files", "forward", "version"},
     "fit": {*WORDS, *FILES, "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
@@ -136,7 +136,9 @@ def test_statistics_know_no_skin_and_physics_no_inference() -> None:
         "units",
     }
     assert not any(MAY_KNOW[floor] & skin for floor in STATISTICS)
-    assert not any(MAY_KNOW[floor] - {"errors", "arrays", "constants"} - PHYSICS for floor in PHYSICS)
+    assert not any(
+        MAY_KNOW[floor] - {"errors", "arrays", "constants", "emulation"} - PHYSICS for floor in PHYSICS
+    )
     assert not MAY_KNOW["files"] & {"forward", "problem", "sampling", "fit"}
     assert not MAY_KNOW["problem"] & {"sampling", "fit", "plot", "report", "cli"}
     assert not MAY_KNOW["fit"] & {"plot", "report", "cli"}

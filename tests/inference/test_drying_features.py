@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import skinbayes as sb
+from skinbayes.emulation import Box
 from skinbayes.forward import forward_model
 from skinbayes.forward.base import Tables
 from skinbayes.problem import load_problem
@@ -192,8 +193,7 @@ def test_a_table_knows_its_box() -> None:
     groups = skin_groups(
         load, pull, height=height, spectrum=surface, skin=skin, area_correction=np.array(0.42)
     )
-    low, high = ({n: float(end(x[:2])) for n, x in groups.items()} for end in (np.min, np.max))
-    table = bridge_table(low, high, depth=6830.0 / 20e3 / 1e-7)
+    table = bridge_table(Box.around({n: x[:2] for n, x in groups.items()}), depth=6830.0 / 20e3 / 1e-7)
     assert table is not None
     assert table.covers(groups).tolist() == [True, True, False]
 

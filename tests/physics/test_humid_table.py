@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from skinbayes.contact import LayeredSkin, gap_distribution
+from skinbayes.emulation import Box
 from skinbayes.errors import InputError
 from skinbayes.roughness import named_surface
 from skinbayes.wetting import (
@@ -33,9 +34,9 @@ def air(humidity):
 
 
 def table_over(groups, strength, **options):
-    low, high = ({name: float(end(x)) for name, x in groups.items()} for end in (np.min, np.max))
-    high["load"] = float(np.max(groups["load"] + np.log1p(strength)))
-    return humid_table(low, high, spectrum=SURFACE, skin=SKIN, area_correction=GAMMA, **options)
+    ends = dict(Box.around(groups).ends)
+    ends["load"] = (ends["load"][0], float(np.max(groups["load"] + np.log1p(strength))))
+    return humid_table(Box(ends), spectrum=SURFACE, skin=SKIN, area_correction=GAMMA, **options)
 
 
 @pytest.mark.parametrize("thickness", [0.0, 0.1])
