@@ -7,10 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import prod
+from typing import Any
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.emulation import (
     Box,
     Interpolant,
@@ -147,13 +148,13 @@ def _prepare(
         name: 0.0 if low > 0 else max(abs(low), abs(high)) or 1.0 for name, (low, high) in finite.items()
     }
     box = Box.around(_scaled({name: np.array(ends) for name, ends in finite.items()}, scales))
-    shared = {"model": model, "tables": tables, "scales": scales, "held": held}
+    shared: Any = {"model": model, "tables": tables, "scales": scales, "held": held}
 
     def build(unfinished: Unfinished) -> Stored:
         with Tasks(cores, progress=progress, kept=unfinished) as tasks:
             trial = box.random(_TRIALS, seed=0)
             exact = tasks.at("trial", partial(_solve, **shared), trial, 1)
-            positive = (exact > 0).all(axis=0)
+            positive: Any = (exact > 0).all(axis=0)
             exact = np.where(positive, np.log(np.where(positive, exact, 1.0)), exact)
             solve, judge = partial(_solve, **shared, positive=positive), partial(_error, positive=positive)
             counts = counts_along(box, solve, judge, tolerance / 2, tasks, 1)
@@ -216,7 +217,7 @@ def _solve(
     tables: Tables,
     scales: Mapping[str, float],
     held: Mapping[str, float],
-    positive: FloatArray | bool = False,
+    positive: ArrayLike = False,
 ) -> FloatArray:
     """Observables, or their logarithms, at M places, shape ``(M, observables)``."""
     size = max(len(x) for x in places.values())
@@ -232,7 +233,7 @@ def _columns(found: Mapping[str, FloatArray], names: Sequence[str], shape: tuple
     return np.stack([np.broadcast_to(found[name], shape) for name in names], axis=-1)
 
 
-def _error(found: FloatArray, exact: FloatArray, places: Places, positive: FloatArray) -> float:
+def _error(found: FloatArray, exact: FloatArray, places: Places, positive: ArrayLike) -> float:
     """Largest error, relative to the value where observables are positive, else to their largest one."""
     difference = np.where(positive, np.expm1(np.where(positive, found - exact, 0.0)), found - exact)
     unit = np.where(positive, 1.0, np.maximum(np.abs(exact).max(axis=0), np.finfo(float).tiny))
