@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 __all__ = ["Dataset", "Fit", "InputError", "NoiseFamily", "Problem", "__version__", "compare", "load_dataset", "load_fit",
-           "load_problem", "register_noise", "register_quantity", "sample"]  # fmt: skip
+           "load_problem", "register_engine", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
     from skinbayes.problem import Problem, load_problem
+    from skinbayes.sampling import register_engine
     from skinbayes.statistics import NoiseFamily, register_noise
     from skinbayes.vocabulary import register_quantity
 
@@ -38,6 +39,7 @@ _HOME = {
     "load_fit": "skinbayes.fit",
     "load_problem": "skinbayes.problem",
     "NoiseFamily": "skinbayes.statistics",
+    "register_engine": "skinbayes.sampling",
     "register_noise": "skinbayes.statistics",
     "register_quantity": "skinbayes.vocabulary",
     "sample": "skinbayes.fit",

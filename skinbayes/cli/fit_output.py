@@ -22,9 +22,8 @@ def print_fit(result: Fit, directory: Path, page: Path | None) -> None:
 
     title = ("" if result.converged else "NOT CONVERGED – ") + result.provenance["title"]
     rows, crowded = _rows(result)
-    print_table(
-        ("parameter", "median", "5 %", "95 %", "ESS", "R-hat"), rows, title=title, right=(1, 2, 3, 4, 5)
-    )
+    headers = ("parameter", "median", "5 %", "95 %", *_convergence(result))
+    print_table(headers, rows, title=title, right=tuple(range(1, len(headers))))
     print_sentences(remarks(result))
     if crowded:
         say(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
@@ -35,7 +34,7 @@ def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
     """Rows of the table, and the derived quantities that are left to the file because they differ over many rows."""
     from skinbayes.units import format_quantity
 
-    free = result.summary()
+    free, shown = result.summary(), _convergence(result)
     everything = result.summary(derived=True)
     counts = Counter(label.partition("[")[0] for label in everything.index)
     crowded = {name for name, count in counts.items() if count > MOST_ROWS}
@@ -45,6 +44,12 @@ def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
         if label not in free.index and label.partition("[")[0] in crowded:
             continue
         values = [format_quantity(row[key], row["unit"]) for key in ("median", "q05", "q95")]
-        convergence = [f"{row['ess_bulk']:.0f}", f"{row['r_hat']:.3f}"] if label in free.index else ["", ""]
-        rows.append([label, *values, *convergence])
+        found = [f"{row[key]:{form}}" if label in free.index else "" for key, form in shown.values()]
+        rows.append([label, *values, *found])
     return rows, crowded
+
+
+def _convergence(result: Fit) -> dict[str, tuple[str, str]]:
+    """Headers of the diagnostics of parameters that the engine has, with their name and format."""
+    known = {"ESS": ("ess_bulk", ".0f"), "R-hat": ("r_hat", ".3f")}
+    return {header: entry for header, entry in known.items() if entry[0] in result.provenance["sampling"]}

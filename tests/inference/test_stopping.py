@@ -191,10 +191,10 @@ def test_half_and_half_inside_every_ensemble_does_not_pass():
 
 def test_a_few_walkers_that_never_move_do_not_pass():
     positions = chains(steps=400, tau=5.0)
-    assert verdict(positions).stuck_walkers == 0
+    assert verdict(positions).unmoved_walkers == 0
     positions[2, :, 7] = positions[2, 0, 7] * 0.1  # in the middle of the others, where R-hat sees nothing
     report = verdict(positions)
-    assert report.stuck_walkers == 1
+    assert report.unmoved_walkers == 1
     assert any("1 of all walkers never moved" in sentence for sentence in report.missing)
 
 
