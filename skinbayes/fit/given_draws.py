@@ -67,7 +67,7 @@ def _theta(problem: Problem, samples: Any) -> FloatArray:
 def _of_parameter(found: Any, label: str) -> FloatArray:
     """Draws of one parameter by its label, or by its name with levels as a dimension, shape ``(chains, draws)``."""
     name, _, level = label.partition("[")
-    values = found[label] if label in found else found[name] if name in found else None
+    values = found.get(label, found.get(name))
     extra = [d for d in getattr(values, "dims", ()) if d not in ("chain", "draw")]
     if values is not None and label not in found and level:
         level = level.removesuffix("]")

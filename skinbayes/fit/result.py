@@ -49,9 +49,9 @@ class Fit:
         ----------
         problem : a problem with data
         samples : draws of the free parameters in SI: an array ``(draws, D)`` or ``(chains, draws, D)`` in the order of
-            ``problem.names``; or by name, each ``(draws,)`` or ``(chains, draws)``: a mapping, a data frame, an ``xarray.Dataset``,
-            or what has one as ``posterior`` (``InferenceData``, ``DataTree``). Levels of a parameter are ``name[level]``, or a dimension of
-            ``name`` with labels. Other variables are left aside
+            ``problem.names``; or by name, each ``(draws,)`` or ``(chains, draws)``: a mapping, a data frame, an
+            ``xarray.Dataset``, or what has one as ``posterior`` (``InferenceData``, ``DataTree``). Levels of a parameter are
+            ``name[level]``, or a dimension of ``name`` with labels. Other variables are left aside
         log_weights : ln of the weights up to a constant, shape ``(draws,)`` or ``(chains, draws)``; None if all weigh the same
         seed : non-negative integer, for predictive draws and the resampling of weighted ones
 

@@ -34,9 +34,9 @@ def sample(
 ) -> Fit:
     """Sample the posterior of a problem until enough has been sampled.
 
-    With ``emcee``, several independent ensembles start from draws of the prior, led towards the posterior where those do not find
-    it (see ``skinbayes.statistics.annealing``), and run until autocorrelation time, effective sample size and R-hat over ensembles
-    agree that enough has been sampled (see ``skinbayes.sampling.stopping``). One seed gives the same draws
+    With ``emcee``, several independent ensembles start from draws of the prior, led towards the posterior where those do not
+    find it (see ``skinbayes.statistics.annealing``), and run until autocorrelation time, effective sample size and R-hat over
+    ensembles agree that enough has been sampled (see ``skinbayes.sampling.stopping``). One seed gives the same draws
     bit for bit on any number of cores, resumed or not. ``nested`` is nested sampling, which also gives the evidence.
 
     Parameters

@@ -68,7 +68,7 @@ class RunDirectory:
     store : the steps of the sampler
     """
 
-    def __init__(self, path: Path, problem: Problem, resume: bool, engine: str) -> None:
+    def __init__(self, path: Path, problem: Problem, resume: bool, engine: str = "emcee") -> None:
         self.path = path
         self.store = SampleStore(path / STEPS, resume=resume)
         self._problem = problem

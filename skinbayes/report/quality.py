@@ -135,8 +135,8 @@ def _of(inside: int, count: int) -> str:
 
 
 TOLD = (
-    "{ensembles} independent ensembles of {walkers} walkers made {steps} steps each; the first {burn_in} were left out and one in "
-    "{thinning} of the others kept.",
+    "{ensembles} independent ensembles of {walkers} walkers made {steps} steps each; the first {burn_in} were left out and "
+    "one in {thinning} of the others kept.",
     "{runs} independent runs of nested sampling with {live_points} live points each were merged.",
     "{acceptance} of the proposed moves were accepted.",
     "The model was evaluated {evaluations} times.",

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.options import EngineOptions, whole

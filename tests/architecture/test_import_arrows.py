@@ -44,7 +44,7 @@ MAY_KNOW: dict[str, set[str]] = {
                "skinbayes"},
     "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "skinbayes"},
     # the shop window names its goods but opens them when asked
-    "skinbayes": {"errors", "vocabulary", "statistics", "files", "problem", "fit", "comparison"},
+    "skinbayes": {"errors", "vocabulary", "statistics", "sampling", "files", "problem", "fit", "comparison"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
 
@@ -55,6 +55,7 @@ HOMES: dict[str, set[str]] = {
     "arviz": {"fit"},
     "click": {"cli"},
     "corner": {"plot"},
+    "dynesty": {"sampling"},
     "emcee": {"sampling"},
     "h5netcdf": {"fit"},
     "h5py": {"sampling", "fit"},

@@ -16,7 +16,6 @@ from skinbayes.sampling.convergence import (
     r_hat,
     rank_normalise,
     rank_r_hat,
-    split_r_hat,
 )
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
@@ -87,7 +86,6 @@ def test_r_hat_by_hand():
     assert r_hat([[-1.0, 0.0, 1.0], [1.0, 2.0, 3.0]]) == pytest.approx(np.sqrt(2 / 3 + 2))
     assert np.isnan(r_hat([[1.0, 1.0], [1.0, 1.0]]))
     assert r_hat([[1.0, 1.0], [2.0, 2.0]]) == np.inf
-    assert split_r_hat([[1.0, 2.0, 9.0, 2.0, 1.0]]) == pytest.approx(np.sqrt(1 / 2))
 
 
 @pytest.mark.parametrize("case", ["same", "shifted", "wider", "drifting", "tied"])
