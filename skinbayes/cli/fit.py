@@ -114,7 +114,7 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
 
     sampling = result.provenance["sampling"]
     summary = result.summary()
-    columns = [name for name in summary if not name.startswith("prior_")]
+    columns = [name for name in summary if not str(name).startswith("prior_")]
     evidence, error = sampling["log_evidence"] or (None, None)
     return {
         "run": str(directory),

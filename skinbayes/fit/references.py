@@ -42,7 +42,7 @@ METHODS = {
     "emcee": (EMCEE, DIFFERENTIAL_EVOLUTION, R_HAT),
     "nested": (DYNESTY, NESTED_SAMPLING),
 }
-"""What to cite for an engine; of others no more is known than that their chains are compared."""
+"""What to cite for an engine."""
 
 
 def references(problem: Problem, engine: str = "emcee") -> list[Reference]:
@@ -52,7 +52,7 @@ def references(problem: Problem, engine: str = "emcee") -> list[Reference]:
     that is finite, capillary bridges, a lubricant. A model without contact mechanics cites none.
     """
     origin = [] if problem.dataset is None else data_reference(problem.dataset)
-    return [*_theory(problem), *origin, *METHODS.get(engine, (R_HAT,)), ARVIZ, software()]
+    return [*_theory(problem), *origin, *METHODS.get(engine, ()), ARVIZ, software()]
 
 
 def data_reference(dataset: Dataset) -> list[Reference]:

@@ -108,7 +108,7 @@ class Fit:
         """Quantiles of one parameter or derived quantity, SI, shape of ``probabilities``; of parameters with the weights."""
         weighted = self.groups.get("weighted_posterior") if group == "posterior" else None
         if weighted is None or label not in self.names:
-            return np.asarray(np.quantile(self.draws(label, group), probabilities))
+            return np.asarray(np.quantile(self.draws(label, group), np.asarray(probabilities, dtype=float)))
         from skinbayes.sampling.draws import weighted_quantiles
 
         values = weighted["theta"].values[..., self.names.index(label)].ravel()

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.options import EngineOptions, whole
@@ -18,6 +19,9 @@ from skinbayes.sampling.target import Target
 
 REST = 0.01
 """A run ends when what is left of the evidence is at most this in its logarithm."""
+
+FEWEST_RUNS = 4
+"""Runs that are made at least, so that they can be held against each other."""
 
 TOLD = 100
 """Iterations between two calls of ``progress``."""
@@ -29,7 +33,7 @@ class NestedOptions(EngineOptions):
 
     Attributes
     ----------
-    live_points : of each run; must find every mode
+    live_points : of each run; enough to find every mode
     max_runs : independent runs, whose points are merged, until the effective sample size is reached; then the engine gives up
 
     Raises
@@ -38,7 +42,7 @@ class NestedOptions(EngineOptions):
         dynesty is not installed, or a value is out of range.
     """
 
-    live_points: int = 500
+    live_points: int = 250
     max_runs: int = 40
 
     def __post_init__(self) -> None:
@@ -56,8 +60,11 @@ class NestedOptions(EngineOptions):
 class NestedEngine:
     """Independent runs of dynesty, merged until their weighted draws have the effective sample size wanted.
 
-    Speagle 2020, doi 10.1093/mnras/staa278; Skilling 2006, doi 10.1214/06-BA127. Runs are not stored: one that was stopped
-    begins anew. The same seed gives the same draws.
+    Speagle 2020, doi 10.1093/mnras/staa278; Skilling 2006, doi 10.1214/06-BA127. Points move along random slices, scaled by one
+    ellipsoid about all live points: on a ridge a hundred times longer than wide, random walks scaled by several ellipsoids left the
+    median of a run of 100 live points uncertain by 0.10 in probability, slices by 0.05. The weights alone would claim 0.025.
+    Therefore at least four runs are made, and the effective sample size is what their disagreement leaves of that of the weights.
+    Runs are not stored: what was stopped begins anew. The same seed gives the same draws.
     """
 
     options = NestedOptions
@@ -82,7 +89,8 @@ class NestedEngine:
                 lambda unit: target.prior_transform(unit[np.newaxis])[0],
                 len(target.names),
                 nlive=options.live_points,
-                sample="rwalk",
+                bound="single",
+                sample="rslice",
                 rstate=np.random.default_rng([options.seed, len(runs)]),
             )
             sampler.run_nested(
@@ -90,35 +98,45 @@ class NestedEngine:
             )
             runs.append(sampler.results)
             steps += int(sampler.results.niter)
-            found = runs[0] if len(runs) == 1 else dynesty.utils.merge_runs(runs, print_progress=False)
-            draws = Draws(found.samples, found.logwt)
-            if draws.effective_number >= options.ess or len(runs) == options.max_runs:
-                return _finished(found, draws.effective_number, options, len(runs), steps)
+            if len(runs) < min(FEWEST_RUNS, options.max_runs):
+                continue
+            found = dynesty.utils.merge_runs(runs, print_progress=False) if len(runs) > 1 else runs[0]
+            sizes = _effective_sizes(runs, found)
+            if sizes.min() >= options.ess or len(runs) >= options.max_runs:
+                return _finished(found, sizes, options, len(runs), steps)
 
 
-def _finished(found: Any, size: float, options: NestedOptions, runs: int, steps: int) -> Draws:
-    evidence = float(found.logz[-1]), float(found.logzerr[-1])
-    enough = size >= options.ess
+def _effective_sizes(runs: list[Any], found: Any) -> FloatArray:
+    """Effective sample size of each coordinate: by the weights, or by how far the means of the runs differ if that is less."""
+    weights = found.importance_weights()
+    by_weights = np.full(found.samples.shape[1], 1.0 / np.sum(weights**2))
+    if len(runs) < FEWEST_RUNS:
+        return by_weights
+    means = np.array([run.importance_weights() @ run.samples for run in runs])
+    variance = weights @ (found.samples - weights @ found.samples) ** 2
+    return np.minimum(by_weights, len(runs) * variance / means.var(axis=0, ddof=1))
+
+
+def _finished(found: Any, sizes: FloatArray, options: NestedOptions, runs: int, steps: int) -> Draws:
+    evidence, size = (float(found.logz[-1]), float(found.logzerr[-1])), float(sizes.min())
     lacking = f"the effective sample size is {size:.0f}, {options.ess:.0f} is asked for"
-    words = f"effective sample size {size:.0f}, ln Z = {evidence[0]:.2f} ± {evidence[1]:.2f}"
-    dimension = found.samples.shape[1]
-    return Draws(
-        found.samples,
-        found.logwt,
-        evidence,
-        {
-            "converged": enough,
-            "verdict": f"Converged after {steps} iterations: {words}."
-            if enough
-            else f"Not converged after {steps} iterations: {lacking}. What to do: more live points, or more runs.",
-            "missing": [] if enough else [lacking],
-            "runs": runs,
-            "live_points": options.live_points,
-            "steps": steps,
-            "evaluations": int(np.sum(found.ncall)),
-            "ess_bulk": np.full(dimension, size),
-        },
-    )
+    words = f"effective sample size at least {size:.0f}, ln Z = {evidence[0]:.2f} ± {evidence[1]:.2f}"
+    said = f"Converged after {steps} iterations: {words}."
+    if size < options.ess:
+        said = (
+            f"Not converged after {steps} iterations: {lacking}. What to do: more live points, or more runs."
+        )
+    diagnostics = {
+        "converged": size >= options.ess,
+        "verdict": said,
+        "missing": [lacking] if size < options.ess else [],
+        "runs": runs,
+        "live_points": options.live_points,
+        "steps": steps,
+        "evaluations": int(np.sum(found.ncall)),
+        "ess_bulk": sizes,
+    }
+    return Draws(found.samples, found.logwt, evidence, diagnostics)
 
 
 def _told(progress: Callable[[RunProgress], None] | None, before: int, runs: int) -> Any:

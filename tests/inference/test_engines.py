@@ -52,7 +52,7 @@ def hold_against_the_exact_answer(target, draws, within=4.5):
     """Shares below the exact quantiles, along coordinates and along the ridge, in standard errors of the effective size."""
     mean, covariance = target.moments()
     directions = np.concatenate([np.eye(target.dimension), np.ones((1, target.dimension))])
-    size = draws.effective_number if draws.log_weights is not None else draws.diagnostics["ess_tail"].min()
+    size = draws.diagnostics["ess_tail" if draws.log_weights is None else "ess_bulk"].min()
     weights = np.ones(draws.samples[..., 0].size)
     if draws.log_weights is not None:
         weights = np.exp(draws.log_weights - draws.log_weights.max()).ravel()
@@ -76,10 +76,10 @@ def test_ensembles_against_the_exact_answer(dimension, ridge) -> None:
 @pytest.mark.parametrize(
     ("dimension", "ridge", "live", "ess"),
     [
-        (2, 100.0, 100, 400),
-        pytest.param(3, 1.0, 500, 2000, marks=pytest.mark.slow),
-        pytest.param(3, 300.0, 500, 2000, marks=pytest.mark.slow),
-        pytest.param(5, 300.0, 500, 2000, marks=pytest.mark.slow),
+        (2, 100.0, 50, 200),
+        pytest.param(3, 1.0, 250, 1000, marks=pytest.mark.slow),
+        pytest.param(3, 300.0, 250, 1000, marks=pytest.mark.slow),
+        pytest.param(5, 300.0, 250, 1000, marks=pytest.mark.slow),
     ],
 )
 def test_nested_sampling_against_the_exact_answer(dimension, ridge, live, ess) -> None:
@@ -90,7 +90,10 @@ def test_nested_sampling_against_the_exact_answer(dimension, ridge, live, ess) -
     assert error < 0.3
     assert abs(value - target.log_evidence()) < 4.5 * error
     hold_against_the_exact_answer(target, draws)
-    assert draws.diagnostics["converged"] and draws.effective_number >= ess
+    assert (
+        draws.diagnostics["converged"]
+        and draws.effective_number >= draws.diagnostics["ess_bulk"].min() >= ess
+    )
 
 
 def test_nested_sampling_gives_the_same_draws_again_and_stops_when_told_to() -> None:
@@ -218,8 +221,11 @@ def test_everything_of_a_weighted_fit_agrees_with_its_weights(problem, weighted,
     # cross-validation of draws with copies is that of the weights: p(y_i | others) = Σw / Σ(w / p_i)
     from skinbayes.fit.arviz_adapter import loo
 
-    density = problem.log_likelihood(theta, pointwise=True)
-    expected = -np.log(weights @ np.exp(-density))
+    likely = (
+        weights > 1e-6 * weights.max()
+    )  # the rest makes the mean of 1/p one of a few draws, which PSIS smooths
+    density = problem.log_likelihood(theta[likely], pointwise=True)
+    expected = np.log(weights[likely].sum()) - np.log(weights[likely] @ np.exp(-density))
     assert_allclose(loo(weighted.groups)["pointwise"], expected, atol=0.05)
     # and a file keeps all of it
     again = load_fit(weighted.save(tmp_path / "run.nc"))
