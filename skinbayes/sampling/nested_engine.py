@@ -61,8 +61,8 @@ class NestedEngine:
     """Independent runs of dynesty, merged until their weighted draws have the effective sample size wanted.
 
     Speagle 2020, doi 10.1093/mnras/staa278; Skilling 2006, doi 10.1214/06-BA127. Points move along random slices, scaled by one
-    ellipsoid about all live points: on a ridge a hundred times longer than wide, random walks scaled by several ellipsoids left the
-    median of a run of 100 live points uncertain by 0.10 in probability, slices by 0.05. The weights alone would claim 0.025.
+    ellipsoid about all live points. On a ridge a hundred times longer than wide, random walks left the median of a run of 100
+    live points uncertain by 0.10 in probability, slices by 0.05 (four runs each); the weights alone would claim 0.025.
     Therefore at least four runs are made, and the effective sample size is what their disagreement leaves of that of the weights.
     Runs are not stored: what was stopped begins anew. The same seed gives the same draws.
     """
