@@ -33,7 +33,7 @@ def to_arviz(groups: Mapping[str, xarray.Dataset]) -> Any:
 
 
 def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
-    """``ess_bulk``, ``ess_tail`` and ``r_hat`` of each coordinate of chains of shape ``(chains, draws, D)``, each ``(D,)``."""
+    """``ess_bulk``, ``ess_tail`` and, of several chains, ``r_hat`` of each coordinate, from ``(chains, draws, D)``, each ``(D,)``."""
     import xarray
 
     az = arviz()
@@ -43,8 +43,9 @@ def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
         found = {
             "ess_bulk": az.ess(chains, method="bulk"),
             "ess_tail": az.ess(chains, method="tail"),
-            "r_hat": az.rhat(chains),
         }
+        if len(samples) > 1:
+            found["r_hat"] = az.rhat(chains)
     return {name: np.asarray(values["x"].values, dtype=float) for name, values in found.items()}
 
 
