@@ -33,7 +33,7 @@ def to_arviz(groups: Mapping[str, xarray.Dataset]) -> Any:
 
 
 def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
-    """``ess_bulk``, ``ess_tail`` and, of several chains, ``r_hat`` of each coordinate, from ``(chains, draws, D)``, each ``(D,)``."""
+    """``ess_bulk``, ``ess_tail`` and, of several chains, ``r_hat``, each ``(D,)``, from samples ``(chains, draws, D)``."""
     import xarray
 
     az = arviz()

@@ -87,5 +87,5 @@ def test_what_cannot_be_is_said(problem: sb.Problem, theta: np.ndarray) -> None:
             sb.Fit.from_draws(problem, given)
     with pytest.raises(sb.InputError, match="log_weights: shape"):
         sb.Fit.from_draws(problem, theta, np.zeros(3))
-    with pytest.raises(sb.InputError, match="nothing to infer|explains data"):
+    with pytest.raises(sb.InputError, match="nothing to infer"):
         sb.Fit.from_draws(sb.load_problem("contact-area"), theta)
