@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,15 +28,55 @@ class Fit:
     ----------
     groups : the groups of the ArviZ schema by name, each an ``xarray.Dataset``: ``posterior`` (free parameters, and derived
         quantities marked ``kind = derived``), ``sample_stats``, ``prior``, ``prior_predictive``,
-        ``posterior_predictive``, ``log_likelihood``, ``observed_data``, ``constant_data``. A chain is an ensemble; draws
+        ``posterior_predictive``, ``log_likelihood``, ``observed_data``, ``constant_data``. All draws weigh the same; what an
+        engine with weights made is kept in ``weighted_posterior``. Of ``emcee`` a chain is an ensemble; its draws
         are thinned to near independence and ordered in time. All values in SI.
-    provenance : versions, seed, model text, data source, sampler settings and the stopping rule's numbers
+    provenance : versions, model text, data source, and under ``sampling`` engine, seed and its diagnostics by name
     problem : the problem, or None if the result was read from a file whose model or data are gone
     """
 
     groups: Mapping[str, xarray.Dataset]
     provenance: Mapping[str, Any]
     problem: Problem | None = None
+
+    @classmethod
+    def from_draws(
+        cls, problem: Problem, samples: Any, log_weights: ArrayLike | None = None, seed: int = 1
+    ) -> Fit:
+        """The whole result from draws of any sampler.
+
+        Parameters
+        ----------
+        problem : a problem with data
+        samples : draws of the free parameters in SI: an array ``(draws, D)`` or ``(chains, draws, D)`` in the order of
+            ``problem.names``; or by name, each ``(draws,)`` or ``(chains, draws)``: a mapping, a data frame, an
+            ``xarray.Dataset``, or what has one as ``posterior`` (``InferenceData``, ``DataTree``). Levels of a parameter are
+            ``name[level]``, or a dimension of ``name`` with labels. Other variables are left aside
+        log_weights : ln of the weights up to a constant, shape ``(draws,)`` or ``(chains, draws)``; None if all weigh the same
+        seed : non-negative integer, for predictive draws and the resampling of weighted ones
+
+        Returns
+        -------
+        Fit
+            ``converged`` if the effective sample size is at least 400 in every parameter and R-hat at most 1.01
+
+        Raises
+        ------
+        InputError
+            Draws of a parameter are missing, lie outside its prior, or shapes do not fit.
+
+        Examples
+        --------
+        >>> import skinbayes as sb
+        >>> problem = sb.load_problem("forearm-glass")
+        >>> before = problem.draw_prior(np.random.default_rng(1), 2000)
+        >>> fit = sb.Fit.from_draws(problem, before, log_weights=problem.log_likelihood(before))
+        >>> fit.converged
+        False
+        """
+        from skinbayes.fit.given_draws import fit_parts
+
+        return cls(*fit_parts(problem, samples, log_weights, seed), problem)
 
     @property
     def name(self) -> str:
@@ -61,6 +101,19 @@ class Fit:
             extra = next(str(dimension) for dimension in variable.dims if dimension not in ("chain", "draw"))
             variable = variable.sel({extra: level.removesuffix("]")})
         return np.asarray(variable.values, dtype=float).reshape(-1)
+
+    def quantiles(
+        self, label: str, probabilities: ArrayLike = (0.05, 0.5, 0.95), group: str = "posterior"
+    ) -> FloatArray:
+        """Quantiles of one parameter or derived quantity, SI, shape of ``probabilities``; of parameters with the weights."""
+        weighted = self.groups.get("weighted_posterior") if group == "posterior" else None
+        if weighted is None or label not in self.names:
+            return np.asarray(np.quantile(self.draws(label, group), np.asarray(probabilities, dtype=float)))
+        from skinbayes.sampling.draws import weighted_quantiles
+
+        values = weighted["theta"].values[..., self.names.index(label)].ravel()
+        log_weights = weighted["log_weight"].values.ravel()
+        return weighted_quantiles(values, np.exp(log_weights - log_weights.max()), probabilities)
 
     def theta(self, group: str = "posterior") -> FloatArray:
         """Draws of all free parameters as vectors, shape ``(draws, D)``, SI."""
@@ -89,28 +142,29 @@ class Fit:
         Returns
         -------
         pandas.DataFrame
-            Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), ``ess_bulk``, ``ess_tail``,
-            ``r_hat``, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``. An effective sample size is nan where
-            the run was too short to know it.
+            Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), of ``ess_bulk``, ``ess_tail`` and
+            ``r_hat`` those that the engine has, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``. An
+            effective sample size is nan where the run was too short to know it.
         """
         import pandas
 
-        rows = {}
+        rows: dict[str, dict[str, Any]] = {}
         sampling = self.provenance["sampling"]
-        labels = [*self.names, *(self.derived_labels() if derived else ())]
-        for i, label in enumerate(labels):
-            q05, median, q95 = np.quantile(self.draws(label), [0.05, 0.5, 0.95])
-            prior05, prior50, prior95 = np.quantile(self.draws(label, "prior"), [0.05, 0.5, 0.95])
-            free = i < len(self.names)
+        for label in (*self.names, *(self.derived_labels() if derived else ())):
+            q05, median, q95 = self.quantiles(label)
+            prior05, prior50, prior95 = self.quantiles(label, group="prior")
+            place = self.names.index(label) if label in self.names else None
             rows[label] = {
                 "unit": self.unit(label),
                 "median": median,
                 "q05": q05,
                 "q95": q95,
-                # 0 is said where the autocorrelation has not died out: then it is not known
-                "ess_bulk": (sampling["ess_bulk"][i] or np.nan) if free else np.nan,
-                "ess_tail": (sampling["ess_tail"][i] or np.nan) if free else np.nan,
-                "r_hat": sampling["r_hat"][i] if free else np.nan,
+                # an effective size of 0 is said where the autocorrelation has not died out: then it is not known
+                **{
+                    name: np.nan if place is None else sampling[name][place] or np.nan
+                    for name in ("ess_bulk", "ess_tail", "r_hat")
+                    if name in sampling
+                },
                 "prior_median": prior50,
                 "prior_q05": prior05,
                 "prior_q95": prior95,

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes import __version__
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError, RepairWarning
 from skinbayes.fit.manifest import (
@@ -23,6 +22,7 @@ from skinbayes.fit.manifest import (
 from skinbayes.fit.netcdf import read_result, result_image
 from skinbayes.fit.result import Fit
 from skinbayes.sealed import DamagedFile, file_digest
+from skinbayes.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -155,7 +155,7 @@ class _Column:
 
 def _column(fit: Fit, label: str) -> _Column:
     scale, draws, unit = scale_for(fit.unit(label), fit.draws(label)), fit.draws(label), fit.unit(label)
-    q05, median, q95 = (float(q) for q in np.quantile(draws, [0.05, 0.5, 0.95]))
+    q05, median, q95 = (float(q) for q in fit.quantiles(label))
     symbol = figure_symbol(fit, label)
     range_text = interval(q05, q95, unit, typical=median, joint=" – ")
 

@@ -45,7 +45,8 @@ MAY_KNOW: dict[str, set[str]] = {
     "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
     "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
     # the shop window names its goods but opens them when asked
-    "skinbayes": {"version", "errors", "vocabulary", "statistics", "files", "forward", "problem", "fit", "comparison"},
+    "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
+                  "comparison"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
 
@@ -56,6 +57,7 @@ HOMES: dict[str, set[str]] = {
     "arviz": {"fit"},
     "click": {"cli"},
     "corner": {"plot"},
+    "dynesty": {"sampling"},
     "emcee": {"sampling"},
     "h5netcdf": {"fit"},
     "h5py": {"sampling", "fit"},
