@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.fit.assemble import assembled, require_data
-from skinbayes.fit.result import Fit
+from skinbayes.fit.fit import Fit
 from skinbayes.fit.run_directory import RunDirectory
 
 if TYPE_CHECKING:

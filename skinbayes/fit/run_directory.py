@@ -43,7 +43,7 @@ from skinbayes.sampling.watched import WatchedDirectory
 from skinbayes.sealed import put_aside
 
 if TYPE_CHECKING:
-    from skinbayes.fit.result import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.problem import Problem
 
 FOLDERS = ("data", STEPS, YARDSTICK_MODELS)
@@ -168,7 +168,7 @@ class RunDirectory:
         """Raise :class:`FolderGone` if the directory is no longer where it was."""
         self._watched.check()
 
-    def keep(self, fit: Fit) -> None:
+    def keep(self, fit: FitResult) -> None:
         """Write the result, and see that everything is there."""
         self.check()
         try:

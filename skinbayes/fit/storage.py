@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError, RepairWarning
+from skinbayes.fit.fit import Fit
 from skinbayes.fit.manifest import (
     RESULT,
     RUN,
@@ -19,8 +19,7 @@ from skinbayes.fit.manifest import (
     read_manifest,
     trouble,
 )
-from skinbayes.fit.netcdf import read_result, result_image
-from skinbayes.fit.result import Fit
+from skinbayes.fit.netcdf import read_result
 from skinbayes.sealed import DamagedFile, file_digest
 from skinbayes.version import __version__
 
@@ -29,12 +28,6 @@ if TYPE_CHECKING:
 
     from skinbayes.files.dataset import Dataset
     from skinbayes.problem import Problem
-
-
-def save_fit(fit: Fit, path: Path) -> Path:
-    """Write a fit as netCDF; the file appears whole or not at all, and shows any damage when it is read."""
-    write_atomically(path, result_image(fit.groups, fit.provenance))
-    return path
 
 
 def load_fit(path: str | Path) -> Fit:

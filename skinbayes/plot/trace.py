@@ -13,13 +13,13 @@ from skinbayes.plot.symbols import figure_symbol
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 POINTS = 250
 """Draws shown of each ensemble."""
 
 
-def plot_trace(fit: Fit, width: str | None = None) -> Figure:
+def plot_trace(fit: FitResult, width: str | None = None) -> Figure:
     """Draw the draws of each free parameter against time, one ensemble beside the other.
 
     Parameters
