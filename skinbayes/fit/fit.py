@@ -56,6 +56,7 @@ class Fit(FitResult):
         --------
         >>> import skinbayes as sb
         >>> problem = sb.load_problem("forearm-glass")
+        >>> import numpy as np
         >>> before = problem.draw_prior(np.random.default_rng(1), 2000)
         >>> fit = sb.Fit.from_draws(problem, before, log_weights=problem.log_likelihood(before))
         >>> fit.converged
