@@ -132,11 +132,8 @@ def _completed(
     columns = () if rows.dataset is None else rows.dataset.units
     check_required(spec, forward, given | ({REPLACED} if has_curves else set()), surface.spectrum, columns)
     defaults = [
-        ParameterSpec(
-            key, QUANTITIES[key].unit, None, None, float(value), None, source=f"default of {forward.name}"
-        )
-        for key, value in forward.optional.items()
-        if key not in given
+        ParameterSpec(key, QUANTITIES[key].unit, None, None, value, None, source=f"default of {forward.name}")
+        for key, value in forward.defaults(given).items()
     ]
     return (*parameters, *defaults, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
 
