@@ -164,6 +164,7 @@ def _provenance(problem: Problem, chains: Chains, settings: SamplerOptions) -> d
         "description": problem.spec.description,
         "names": list(problem.names),
         "fixed": {p.label: {"value": p.value, "source": p.source} for p in problem.fixed},
+        "tied": {p.label: {"text": p.prior_text, "source": p.source} for p in problem.tied},
         "priors": {p.label: {"text": p.prior_text, "unit": p.unit, "source": p.source} for p in problem.free},
         "derived_symbols": {
             name: block.symbol for name, block in problem.spec.derived.items() if block.symbol

@@ -30,6 +30,7 @@ from skinbayes.problem.rows import (
 )
 from skinbayes.problem.settings import apply_settings
 from skinbayes.problem.surface import Surface, choose_surface
+from skinbayes.problem.tied import resolve_ties
 from skinbayes.roughness import TabulatedSpectrum
 from skinbayes.vocabulary import QUANTITIES
 
@@ -135,7 +136,8 @@ def _completed(
         ParameterSpec(key, QUANTITIES[key].unit, None, None, value, None, source=f"default of {forward.name}")
         for key, value in forward.defaults(given).items()
     ]
-    return (*parameters, *defaults, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
+    inputs = resolve_ties([*parameters, *defaults], str(spec.path), rows.conditions.values)
+    return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
 
 
 def _problem(
@@ -152,7 +154,8 @@ def _problem(
         spec=spec,
         forward=forward,
         free=tuple(p for p in parameters if p.prior is not None),
-        fixed=tuple(p for p in parameters if p.prior is None),
+        fixed=tuple(p for p in parameters if p.value is not None),
+        tied=tuple(p for p in parameters if p.same_as is not None),
         conditions=rows.conditions,
         dataset=rows.dataset,
         observations=rows.observations,

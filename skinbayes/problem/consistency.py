@@ -60,9 +60,8 @@ def check_required(
         elif not any(set(names) <= given for names in entry):
             options = "; or ".join(" and ".join(names) for names in entry)
             best = max(entry, key=lambda names: len(given & set(names)) / len(names))
-            lacking = (
-                f" {' and '.join(n for n in best if n not in given)} missing." if given & set(best) else ""
-            )
+            absent = " and ".join(name for name in best if name not in given)
+            lacking = f" Not given: {absent}." if given & set(best) else ""
             raise InputError(
                 f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data.{lacking}"
                 f"{near_miss(columns, [name for names in entry for name in names if name not in given])}".rstrip(
