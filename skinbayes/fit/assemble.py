@@ -119,6 +119,7 @@ def _provenance(problem: Problem, package: str | None) -> dict[str, Any]:
         "description": problem.spec.description,
         "names": list(problem.names),
         "fixed": {p.label: {"value": p.value, "source": p.source} for p in problem.fixed},
+        "tied": {p.label: {"text": p.prior_text, "source": p.source} for p in problem.tied},
         "priors": {p.label: {"text": p.prior_text, "unit": p.unit, "source": p.source} for p in problem.free},
         "derived_symbols": {
             name: block.symbol for name, block in problem.spec.derived.items() if block.symbol

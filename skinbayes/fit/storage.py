@@ -191,6 +191,8 @@ def _is_same(problem: Problem, provenance: Mapping[str, Any]) -> bool:
             and problem.data_fingerprint == provenance["data"]["fingerprint"]
             and {p.label: p.value for p in problem.fixed}
             == {label: entry["value"] for label, entry in provenance["fixed"].items()}
+            and {p.label: p.prior_text for p in problem.tied}
+            == {label: entry["text"] for label, entry in provenance.get("tied", {}).items()}
             and {p.label: p.prior_text for p in problem.free}
             == {label: entry["text"] for label, entry in provenance["priors"].items()}
         )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_parameters
 from skinbayes.lubrication.film_reference import SmoothFilms
 
 VERSION = 1
@@ -62,6 +62,7 @@ class FilmTable:
             "version": VERSION,
             "axes": list(axes.names),
             "counts": list(axes.counts),
+            "homogeneous": axes.homogeneous,
             "ended": axes.ended,
             "side": axes.side,
             "end_offset": axes.end_offset,
@@ -90,6 +91,7 @@ class FilmTable:
             parts = {name: np.asarray(array, dtype=np.float64) for name, array in arrays.items()}
             axes = FilmAxes(
                 names=tuple(metadata["axes"]),
+                homogeneous=bool(metadata.get("homogeneous", False)),
                 ended=int(metadata["ended"]),
                 side=float(metadata["side"]),
                 end_offset=float(metadata["end_offset"]),
@@ -112,9 +114,13 @@ class FilmTable:
             raise InputError(f"A table of films lacks {missing.args[0]}.") from None
 
     def contains(self, **parameters: Any) -> NDArray[np.bool_]:
-        """Where the table holds parameters (SI, named as `FILM_PARAMETERS`, broadcast), or balls that are similar."""
+        """Where the table holds parameters (SI, broadcast), or balls that are similar.
+
+        They are named as `FILM_PARAMETERS`, or as `HOMOGENEOUS_PARAMETERS`.
+        """
         with np.errstate(all="ignore"):
-            logs = [np.log(np.asarray(parameters[name], dtype=np.float64)) for name in FILM_PARAMETERS]
+            named = film_parameters(parameters, 1.0)
+            logs = [np.log(np.asarray(named[name], dtype=np.float64)) for name in FILM_PARAMETERS]
         return self.axes.contains(logs)
 
 

@@ -48,6 +48,7 @@ class BoundModel:
     tables : tabulated roughness spectrum and flow curves of the rows, where there are any
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
     settings : values set over the model file, as given
+    tied : parameters that are multiples of free or fixed ones
     """
 
     spec: ModelSpec
@@ -62,6 +63,7 @@ class BoundModel:
     tables: Tables
     flow_curves: Mapping[str, FlowCurve]
     settings: Mapping[str, str] = field(default_factory=dict)
+    tied: tuple[ParameterSpec, ...] = ()
 
     @property
     def name(self) -> str:
@@ -147,7 +149,7 @@ class BoundModel:
         if conditions is not None:
             curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, rows, self.spec.path)
             tables = replace(tables, flow_curves=curves)
-            alike = distinct_rows(plan_inputs(self.fixed, self.free, rows), rows, tables)
+            alike = distinct_rows(plan_inputs(self.fixed, self.free, rows, self.tied), rows, tables)
 
         def piece(part: FloatArray) -> dict[str, FloatArray]:
             found = self.evaluate(self.inputs(part, conditions), tables, alike)
@@ -233,7 +235,7 @@ class BoundModel:
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
         """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""
         rows = conditions or self.conditions
-        plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
+        plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows, self.tied)
         values = {entry.name: entry.values(theta) for entry in plan if entry.name not in rows.values}
         values |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
@@ -271,7 +273,7 @@ class BoundModel:
     @cached_property
     def plan(self) -> tuple[InputPlan, ...]:
         """Where each input comes from."""
-        return plan_inputs(self.fixed, self.free, self.conditions)
+        return plan_inputs(self.fixed, self.free, self.conditions, self.tied)
 
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
         return as_batch(theta, self.names)

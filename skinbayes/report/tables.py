@@ -131,15 +131,15 @@ def _interval(low: float, high: float, unit: str, typical: float) -> str:
 
 
 def fixed_rows(fit: Fit) -> list[FixedRow]:
-    """Inputs that were not inferred."""
+    """Inputs that were not inferred, or that follow one that was."""
     rows = []
-    for label, entry in fit.provenance["fixed"].items():
+    for label, entry in (fit.provenance["fixed"] | fit.provenance.get("tied", {})).items():
         name, _, level = label.partition("[")
         known = lookup(name)
         symbol = (known.symbol if known else name) + (f" ({level.removesuffix(']')})" if level else "")
-        value = float(entry["value"])
         unit = known.unit if known else "1"
-        rows.append(FixedRow(symbol, spoken_name(label), quantity(value, unit, 6), str(entry["source"])))
+        value = str(entry["text"]) if "text" in entry else quantity(float(entry["value"]), unit, 6)
+        rows.append(FixedRow(symbol, spoken_name(label), value, str(entry["source"])))
     return rows
 
 

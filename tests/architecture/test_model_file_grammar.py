@@ -113,6 +113,8 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
         "by",
         "family",
         "fixed",
+        "same_as",
+        "times",
         "source",
         "models",
         "check",
