@@ -79,6 +79,11 @@ class InputPlan:
         free = np.ascontiguousarray(theta[:, position])
         return free if is_free.all() else np.where(is_free, free, constant)
 
+    @property
+    def varies(self) -> bool:
+        """Whether the parameter vector enters."""
+        return bool((self.index >= 0).any())
+
     @cached_property
     def _prepared(self) -> tuple[NDArray[np.bool_], NDArray[np.intp], FloatArray]:
         """Which rows are free, where they stand in the parameter vector, and the fixed values as one row."""
