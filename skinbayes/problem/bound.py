@@ -236,8 +236,8 @@ class BoundModel:
         """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""
         rows = conditions or self.conditions
         plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows, self.tied)
-        values = {entry.name: entry.values(theta) for entry in plan if entry.name not in rows.values}
-        values |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
+        same, varying = self._parted if conditions is None else _parted(plan, rows)
+        values = same | {entry.name: entry.values(theta) for entry in varying}
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
 
     @cached_property
@@ -275,6 +275,10 @@ class BoundModel:
         """Where each input comes from."""
         return plan_inputs(self.fixed, self.free, self.conditions, self.tied)
 
+    @cached_property
+    def _parted(self) -> tuple[dict[str, FloatArray], list[InputPlan]]:
+        return _parted(self.plan, self.conditions)
+
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
         return as_batch(theta, self.names)
 
@@ -292,3 +296,12 @@ class BoundModel:
                     continue
                 quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
         return {name: without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
+
+
+def _parted(plan: tuple[InputPlan, ...], rows: Conditions) -> tuple[dict[str, FloatArray], list[InputPlan]]:
+    """Inputs that are the same for all parameter vectors, and where the others come from."""
+    wanted = [entry for entry in plan if entry.name not in rows.values]
+    nothing = np.empty((1, 0))
+    same = {entry.name: entry.values(nothing) for entry in wanted if not entry.varies}
+    same |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
+    return same, [entry for entry in wanted if entry.varies]

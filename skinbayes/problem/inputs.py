@@ -83,6 +83,11 @@ class InputPlan:
             free = free * self.times
         return free if is_free.all() else np.where(is_free, free, constant)
 
+    @property
+    def varies(self) -> bool:
+        """Whether the parameter vector enters."""
+        return bool((self.index >= 0).any())
+
     @cached_property
     def _is_tied(self) -> bool:
         return bool((self.times != 1).any())
