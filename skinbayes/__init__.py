@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "NoiseFamily", "Problem", "Quantity", "__version__", "build_problem",
-           "compare", "emulated", "load_dataset", "load_fit", "load_problem", "register_forward_model", "register_noise",
-           "register_quantity", "sample"]  # fmt: skip
+           "compare", "emulated", "load_dataset", "load_fit", "load_problem", "register_engine", "register_forward_model",
+           "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit, load_fit, sample
     from skinbayes.forward import ForwardModel, emulated, register_forward_model
     from skinbayes.problem import Problem, build_problem, load_problem
+    from skinbayes.sampling import register_engine
     from skinbayes.statistics import NoiseFamily, register_noise
     from skinbayes.vocabulary import Quantity, register_quantity
 
@@ -45,6 +46,7 @@ _HOME = {
     "NoiseFamily": "skinbayes.statistics",
     "Quantity": "skinbayes.vocabulary",
     "register_forward_model": "skinbayes.forward",
+    "register_engine": "skinbayes.sampling",
     "register_noise": "skinbayes.statistics",
     "register_quantity": "skinbayes.vocabulary",
     "sample": "skinbayes.fit",

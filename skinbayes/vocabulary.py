@@ -73,6 +73,8 @@ _ALL = (
     Quantity("frictional_shear_stress", "σ_f", "Pa", "shear stress in the area of real contact"),
     Quantity("young_modulus_layer", "E0", "Pa", "Young's modulus of the stratum corneum"),
     Quantity("young_modulus_bulk", "E1", "Pa", "Young's modulus of the tissue below"),
+    Quantity("young_modulus", "E", "Pa", "Young's modulus of a homogeneous solid"),
+    Quantity("poisson_ratio", "ν", "1", "Poisson ratio of a homogeneous solid", -1.0, 0.5),
     Quantity("poisson_ratio_layer", "ν0", "1", "Poisson ratio of the stratum corneum", -1.0, 0.5),
     Quantity("poisson_ratio_bulk", "ν1", "1", "Poisson ratio of the tissue below", -1.0, 0.5),
     Quantity("layer_thickness", "d", "m", "thickness of the stratum corneum"),

@@ -83,13 +83,14 @@ def _show_model(name: str, as_json: bool) -> None:
     problem = load_problem(name)
     spec = problem.spec
     parameters: list[dict[str, Any]] = []
-    for parameter in (*problem.free, *problem.fixed):
+    for parameter in (*problem.free, *problem.fixed, *problem.tied):
         parameters.append(
             {
                 "name": parameter.label,
                 "unit": parameter.unit,
                 "prior": parameter.prior_text if parameter.prior else None,
                 "fixed": parameter.value,
+                **({"tied": parameter.prior_text} if parameter.same_as else {}),
                 "source": parameter.source,
             }
         )
@@ -122,6 +123,7 @@ def _show_model(name: str, as_json: bool) -> None:
             else format_quantity(float(p.value or 0.0), p.unit, written=p.prior_text)
         )
         rows.append((p.label, f"= {value}", p.source))
+    rows += [(p.label, p.prior_text, p.source) for p in problem.tied]
     print_table(("parameter", "prior or value", "source"), rows)
 
 

@@ -46,7 +46,14 @@ if TYPE_CHECKING:
     default=10_000,
     show_default=True,
     type=click.IntRange(100),
-    help="Stop here, converged or not.",
+    help="Stop here, converged or not (emcee).",
+)
+@click.option(
+    "--engine",
+    default="emcee",
+    show_default=True,
+    metavar="NAME",
+    help="What samples: emcee, or nested (nested sampling, also gives the evidence).",
 )
 @click.option("-o", "--output", metavar="DIR", help="Run directory.  [default: runs/MODEL-seedN]")
 @click.option("--resume", is_flag=True, help="Continue the run in the run directory.")
@@ -61,6 +68,7 @@ def fit(
     ess: int,
     cores: int,
     max_steps: int,
+    engine: str,
     output: str | None,
     resume: bool,
     with_report: bool,
@@ -77,15 +85,17 @@ def fit(
 
     problem = load_problem(model, data=data)
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
+    options = {"max_steps": max_steps} if engine == "emcee" else {}
     try:
         with fit_progress() as (count, progress):
             result = sample(
                 problem, seed=seed, ess=ess, cores=cores, directory=directory, resume=resume, progress=progress,
-                preparing=count, max_steps=max_steps,
+                preparing=count, engine=engine, **options,
             )  # fmt: skip
     except KeyboardInterrupt:
+        kept = f"; the steps so far are in {directory}" if (directory / "steps").is_dir() else ""
         say(
-            f"interrupted; the steps so far are in {directory}. Repeat the command with --resume to continue.",
+            f"interrupted{kept}. Repeat the command with --resume to {'continue' if kept else 'begin anew'}.",
             err=True,
         )
         return EXIT_INTERRUPTED
@@ -110,7 +120,8 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
 
     sampling = result.provenance["sampling"]
     summary = result.summary()
-    columns = ["unit", "median", "q05", "q95", "ess_bulk", "ess_tail", "r_hat"]
+    columns = [name for name in summary if not str(name).startswith("prior_")]
+    evidence, error = sampling["log_evidence"] or (None, None)
     return {
         "run": str(directory),
         "model": result.name,
@@ -118,9 +129,11 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
         "verdict": sampling["verdict"],
         "seed": sampling["seed"],
         "parameters": summary[columns].to_dict(orient="index"),
-        "log_evidence": None,
-        "log_likelihood_evaluations": sampling["evaluations"],
-        "steps": sampling["steps"],
+        "engine": sampling["engine"],
+        "log_evidence": evidence,
+        "log_evidence_error": error,
+        "log_likelihood_evaluations": sampling.get("evaluations"),
+        "steps": sampling.get("steps"),
         "seconds": result.provenance["seconds"]["total"],
         "report": page and str(page),
         **digest(result),

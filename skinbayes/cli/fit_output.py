@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,9 +23,8 @@ def print_fit(result: Fit, directory: Path, page: Path | None) -> None:
 
     title = ("" if result.converged else "NOT CONVERGED – ") + result.provenance["title"]
     rows, crowded = _rows(result)
-    print_table(
-        ("parameter", "median", "5 %", "95 %", "ESS", "R-hat"), rows, title=title, right=(1, 2, 3, 4, 5)
-    )
+    headers = ("parameter", "median", "5 %", "95 %", *_convergence(result))
+    print_table(headers, rows, title=title, right=tuple(range(1, len(headers))))
     print_sentences(remarks(result))
     if crowded:
         say(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
@@ -33,10 +33,9 @@ def print_fit(result: Fit, directory: Path, page: Path | None) -> None:
 
 def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
     """Rows of the table, and the derived quantities that are left to the file because they differ over many rows."""
-    from skinbayes.report.words import sample_size
     from skinbayes.units import format_quantity
 
-    free = result.summary()
+    free, shown = result.summary(), _convergence(result)
     everything = result.summary(derived=True)
     counts = Counter(label.partition("[")[0] for label in everything.index)
     crowded = {name for name, count in counts.items() if count > MOST_ROWS}
@@ -46,7 +45,14 @@ def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
         if label not in free.index and label.partition("[")[0] in crowded:
             continue
         values = [format_quantity(row[key], row["unit"]) for key in ("median", "q05", "q95")]
-        known = label in free.index
-        convergence = [sample_size(row["ess_bulk"]), f"{row['r_hat']:.3f}"] if known else ["", ""]
-        rows.append([label, *values, *convergence])
+        found = [form(row[key]) if label in free.index else "" for key, form in shown.values()]
+        rows.append([label, *values, *found])
     return rows, crowded
+
+
+def _convergence(result: Fit) -> dict[str, tuple[str, Callable[[float], str]]]:
+    """Headers of the diagnostics of parameters that the engine has, with their name and how they are written."""
+    from skinbayes.report.words import sample_size
+
+    known = {"ESS": ("ess_bulk", sample_size), "R-hat": ("r_hat", "{:.3f}".format)}
+    return {header: entry for header, entry in known.items() if entry[0] in result.provenance["sampling"]}

@@ -61,6 +61,7 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
     for p in problem.fixed:
         given_as_none = settings.get(p.name, "").lower() == "none"
         parameters[p.label] = None if given_as_none else p.value
+    parameters |= {p.label: parameters[str(p.same_as)] * p.times for p in problem.tied}
     columns: dict[str, Any] = {**problem.conditions.values, **problem.conditions.labels}
     if as_json:
         print_json({
@@ -114,6 +115,7 @@ def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[s
         for p, v in zip(problem.free, theta, strict=True)
     ]
     values += [(p.label, text(p.name, p.value, p.prior_text), p.source) for p in problem.fixed]
+    values += [(p.label, p.prior_text, p.source) for p in problem.tied]
     print_table(("input", "value", "from"), values)
     headers = [*columns, *prediction]
     cells = [

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from skinbayes.cli.output import console, say
 
 if TYPE_CHECKING:
-    from skinbayes.sampling.progress import Progress
+    from skinbayes.sampling.progress import RunProgress
 
 QUIET_SECONDS = 15.0
 """Without a terminal one line is written each time this much time has passed."""
@@ -23,7 +23,7 @@ CLOCK = 9
 
 
 @contextmanager
-def sampling_progress(what: str = SAMPLING) -> Iterator[Callable[[Progress], None]]:
+def sampling_progress(what: str = SAMPLING) -> Iterator[Callable[[RunProgress], None]]:
     """Yield what to call after every block of steps; says how many there are and what is still missing, on one line."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
@@ -40,7 +40,7 @@ def sampling_progress(what: str = SAMPLING) -> Iterator[Callable[[Progress], Non
         task = bar.add_task(f"{what}: starting", total=None)
         before = "" if what == SAMPLING else f"{what}: "
 
-        def update(progress: Progress) -> None:
+        def update(progress: RunProgress) -> None:
             counted = f"{before}{progress.steps} steps, "
             room = terminal.width - len(counted) - CLOCK
             bar.update(task, description=counted + progress.sentence(room))
@@ -72,13 +72,13 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[Progress], None]]]:
+def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[RunProgress], None]]]:
     """Yield what to call while a table is built, and after every block of steps; one bar makes way for the other."""
     with ExitStack() as shown:
         count = shown.enter_context(counted_progress("building the table"))
-        sampling: list[Callable[[Progress], None]] = []
+        sampling: list[Callable[[RunProgress], None]] = []
 
-        def update(progress: Progress) -> None:
+        def update(progress: RunProgress) -> None:
             if not sampling:
                 shown.close()
                 sampling.append(shown.enter_context(sampling_progress()))
@@ -88,12 +88,12 @@ def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[Progr
 
 
 @contextmanager
-def yardstick_progress() -> Iterator[Callable[[str, Progress], None]]:
+def yardstick_progress() -> Iterator[Callable[[str, RunProgress], None]]:
     """Yield what to call with the name of a yardstick after every block of its steps."""
     with ExitStack() as shown:
-        current: dict[str, Callable[[Progress], None]] = {}
+        current: dict[str, Callable[[RunProgress], None]] = {}
 
-        def update(name: str, progress: Progress) -> None:
+        def update(name: str, progress: RunProgress) -> None:
             if name not in current:
                 # the bar of the yardstick before makes way
                 shown.close()
@@ -115,10 +115,10 @@ def _counted_lines(what: str) -> Callable[[int, int], None]:
     return update
 
 
-def _lines(what: str) -> Callable[[Progress], None]:
+def _lines(what: str) -> Callable[[RunProgress], None]:
     last = time.monotonic()
 
-    def update(progress: Progress) -> None:
+    def update(progress: RunProgress) -> None:
         nonlocal last
         if time.monotonic() - last >= QUIET_SECONDS:
             last = time.monotonic()

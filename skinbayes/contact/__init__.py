@@ -1,4 +1,4 @@
-"""Contact mechanics of skin: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
+"""Contact mechanics of skin and other solids: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
@@ -12,13 +12,8 @@ from skinbayes.contact.elliptic_contact import (
 )
 from skinbayes.contact.gaps import GapDistribution, gap_distribution
 from skinbayes.contact.hertz import HertzSphere, sphere_contact
-from skinbayes.contact.layered import (
-    LayeredSkin,
-    effective_modulus,
-    reduced_modulus,
-    surface_response,
-    validate_skin,
-)
+from skinbayes.contact.homogeneous import HomogeneousSolid
+from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.line_contact import (
     EquivalentCylinder,
     HertzLine,
@@ -28,17 +23,26 @@ from skinbayes.contact.line_contact import (
 )
 from skinbayes.contact.separation import mean_separation
 from skinbayes.contact.separation_inverse import pressure_at_separation
+from skinbayes.contact.solid import (
+    ElasticSolid,
+    effective_modulus,
+    reduced_modulus,
+    surface_response,
+    validate_solid,
+)
 from skinbayes.contact.variance import twice_stress_variance
 
 __all__ = [
     "AREA_CORRECTION",
     "ContactArea",
+    "ElasticSolid",
     "EllipseFactors",
     "EquivalentCylinder",
     "GapDistribution",
     "HertzEllipse",
     "HertzLine",
     "HertzSphere",
+    "HomogeneousSolid",
     "LayeredSkin",
     "corrected_twice_stress_variance",
     "cylinder_of_contact",
@@ -59,5 +63,5 @@ __all__ = [
     "surface_response",
     "total_contact_area",
     "twice_stress_variance",
-    "validate_skin",
+    "validate_solid",
 ]

@@ -21,9 +21,9 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact._rows import as_rows, blocks
 from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import IndexArray
-from skinbayes.contact.layered import LayeredSkin, effective_modulus
 from skinbayes.contact.separation_grid import Places, join, resolve
 from skinbayes.contact.separation_tables import closing_function
+from skinbayes.contact.solid import ElasticSolid, effective_modulus
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.roughness.tabulated import TabulatedSpectrum
@@ -88,7 +88,7 @@ _PLACES = Places(_shares(_PLATEAU), _shares(_FRACTAL), _shares(_WHOLE))
 
 
 def resolve_gaps(
-    pressure: FloatArray, spectrum: PowerSpectrum, skin: LayeredSkin, area_correction: FloatArray
+    pressure: FloatArray, spectrum: PowerSpectrum, skin: ElasticSolid, area_correction: FloatArray
 ) -> GapCells:
     """Area and separation at all magnifications for ``pressure`` of shape ``(..., K)``; γ has the shape of the batch."""
     parts = [_PLATEAU, _FRACTAL] if isinstance(spectrum, SelfAffineSpectrum) else [_WHOLE]

@@ -13,8 +13,8 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact._rows import as_rows, blocks
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.gap_cells import resolve_gaps
-from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation import mean_separation
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.errors import InputError
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum
@@ -139,7 +139,7 @@ def gap_distribution(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
     *,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     area_correction: ArrayLike = AREA_CORRECTION,
     closure: Literal["gaussian", "sharp"] = "gaussian",
 ) -> GapDistribution:
@@ -192,6 +192,7 @@ def gap_distribution(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> gaps = gap_distribution(6830.0, named_surface("paper_reference"), skin=wet)

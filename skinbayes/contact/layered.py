@@ -7,12 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.errors import InputError
+from skinbayes.arrays import FloatArray
+from skinbayes.contact.solid import reduced_modulus
 from skinbayes.roughness._fields import Floats, as_field, with_axes
-
-SATURATION = 10.0
-"""qd above which S is taken as 1 when stresses are summed over wavevectors; S² − 1 is below 4e-7 there."""
 
 _DEEP = 400.0  # of qd, where e^(−2qd) is 0 in floating point
 
@@ -22,7 +19,7 @@ class LayeredSkin:
     """Stratum corneum bonded to deeper tissue, a layer on a half-space (Fig. 5 of the paper).
 
     Both are linear elastic and isotropic.
-    All fields broadcast. Impossible values give nan, see `validate_skin` for a message instead.
+    All fields broadcast. Impossible values give nan, see `validate_solid` for a message instead.
 
     Attributes
     ----------
@@ -53,69 +50,52 @@ class LayeredSkin:
         for name in self.__dataclass_fields__:
             object.__setattr__(self, name, as_field(getattr(self, name)))
 
+    @property
+    def contact_modulus(self) -> FloatArray:
+        """E1*, Pa, batch shape: the layer is far thinner than a contact is wide."""
+        return reduced_modulus(self.young_modulus_bulk, self.poisson_ratio_bulk)
 
-def validate_skin(skin: LayeredSkin) -> None:
-    """Refuse a skin that cannot exist.
+    @property
+    def surface_modulus(self) -> FloatArray:
+        """E0*, Pa, batch shape."""
+        return np.asarray(self.young_modulus_layer / (1 - np.square(self.poisson_ratio_layer)))
 
-    Evaluation itself never raises: impossible members of a batch give nan. Call this where a person typed the
-    numbers.
+    @property
+    def transition_length(self) -> FloatArray:
+        """d, m, batch shape."""
+        return np.asarray(self.layer_thickness)
 
-    Parameters
-    ----------
-    skin : scalar or batched
+    def inverse_response(self, wavevector: FloatArray, axes: int) -> FloatArray:
+        """1/S(q), dimensionless, with ``axes`` new last axes for the wavevector (1/m); silences no warnings.
 
-    Raises
-    ------
-    InputError
-        if a modulus (Pa) or the thickness (m) is not a finite positive number or a Poisson ratio not in (−1,
-        0.5]
+        With x = qd, e = exp(−2x): ``S = [1 + 4mxe − mne²] / [1 − (m + n + 4mx²)e + mne²]``. Relative error below 2e-11 for
+        1 ≤ E0/E1 ≤ 1e7 and below 1e-9 down to E0/E1 = 1e-7 (Eq. 4 evaluated as printed loses six to eight digits for a stiff
+        layer).
+        """
+        at_zero, ground, linear, product, four_m = (with_axes(x, axes) for x in _contrast(self))
+        # beyond _DEEP the half-space is not felt, and inf times 0 has no value
+        x = np.minimum(wavevector * with_axes(self.layer_thickness, axes), _DEEP)
+        rise = np.expm1(-2 * x)  # −g
+        bending = four_m * (x * (1 + rise))
+        part = product * rise
+        numerator = at_zero - part * (2 + rise) + bending
+        denominator = ground + rise * (part - linear) - bending * x
+        return np.asarray(denominator / numerator)
 
-    References
-    ----------
-    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 4).
-
-    Examples
-    --------
-    >>> validate_skin(LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=-20e3, layer_thickness=20e-6))
-    Traceback (most recent call last):
-        ...
-    skinbayes.errors.InputError: young_modulus_bulk is -20000 Pa, but must be a finite number > 0 Pa.
-    """
-    for name, unit in (("young_modulus_layer", "Pa"), ("young_modulus_bulk", "Pa"), ("layer_thickness", "m")):
-        for value in np.ravel(getattr(skin, name)).tolist():
-            if not (np.isfinite(value) and value > 0):
-                raise InputError(f"{name} is {value:g} {unit}, but must be a finite number > 0 {unit}.")
-    for name in ("poisson_ratio_layer", "poisson_ratio_bulk"):
-        for value in np.ravel(getattr(skin, name)).tolist():
-            if not -1 < value <= 0.5:
-                raise InputError(f"{name} is {value:g}, but must be larger than -1 and at most 0.5.")
-
-
-def reduced_modulus(young_modulus: ArrayLike, poisson_ratio: ArrayLike) -> FloatArray:
-    """Plane-strain modulus ``E* = E/(1 − ν²)`` (beside Eq. 4 of the paper).
-
-    Parameters
-    ----------
-    young_modulus : E, Pa, > 0, any shape
-    poisson_ratio : ν, dimensionless, −1 < ν ≤ 0.5, broadcasts
-
-    Returns
-    -------
-    reduced_modulus : Pa, broadcast shape; nan where an argument is impossible
-
-    References
-    ----------
-    Johnson, Contact Mechanics (1985), Sect. 4.2, doi 10.1017/CBO9781139171731.
-
-    Examples
-    --------
-    >>> print(f"{reduced_modulus(20e3, 0.5):.1f}")
-    26666.7
-    """
-    modulus, ratio = np.asarray(young_modulus, dtype=np.float64), np.asarray(poisson_ratio, dtype=np.float64)
-    with np.errstate(all="ignore"):
-        possible = (modulus > 0) & (ratio > -1) & (ratio <= 0.5)
-        return np.where(possible, modulus / (1 - ratio * ratio), np.nan)[()]
+    def compliance_fall(self, wavevector: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """φ = 1/(q E_eff), m/Pa, and ``−dφ/dln q``, batch shape plus the axis of ``wavevector`` (1/m)."""
+        at_zero, ground, linear, product, four_m = (with_axes(x, 1) for x in _contrast(self))
+        x = wavevector * with_axes(self.layer_thickness, 1)
+        rise = np.expm1(-2 * x)
+        decay = 1 + rise
+        bending = four_m * (x * decay)
+        numerator = at_zero - product * (rise * (2 + rise)) + bending
+        denominator = ground + rise * (product * rise - linear) - bending * x
+        numerator_slope = x * decay * (4 * product * decay + four_m * (1 - 2 * x))
+        denominator_slope = 2 * x * decay * (linear - 2 * product * rise - four_m * (x * (1 - x)))
+        stiffening = denominator_slope / denominator - numerator_slope / numerator  # dln E_eff/dln q
+        compliance = numerator / (wavevector * with_axes(self.surface_modulus, 1) * denominator)
+        return np.asarray(compliance), np.asarray(compliance * (1 + stiffening))
 
 
 class _Contrast(NamedTuple):
@@ -143,89 +123,3 @@ def _contrast(skin: LayeredSkin) -> _Contrast:
     m, n = 1 - one_minus_m, 1 - one_minus_n
     linear = one_minus_m * n + one_minus_n * m
     return _Contrast(one_minus_m + m * one_minus_n, one_minus_m * one_minus_n, linear, m * n, 4 * m)
-
-
-def inverse_response(skin: LayeredSkin, wavevector: FloatArray, axes: int) -> FloatArray:
-    """1/S(q) with ``axes`` new last axes for the wavevector, see `surface_response`; silences no warnings."""
-    at_zero, ground, linear, product, four_m = (with_axes(x, axes) for x in _contrast(skin))
-    # beyond _DEEP the half-space is not felt, and inf times 0 has no value
-    x = np.minimum(wavevector * with_axes(skin.layer_thickness, axes), _DEEP)
-    rise = np.expm1(-2 * x)  # −g
-    bending = four_m * (x * (1 + rise))
-    part = product * rise
-    numerator = at_zero - part * (2 + rise) + bending
-    denominator = ground + rise * (part - linear) - bending * x
-    return np.asarray(denominator / numerator)
-
-
-def _wavevector(wavevector: ArrayLike) -> FloatArray:
-    """The wavevectors as an array, nan in place of negative ones."""
-    q = np.asarray(wavevector, dtype=np.float64)
-    return np.where(q < 0, np.nan, q)
-
-
-def surface_response(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
-    """Response S(q) of the layered half-space, relative to one of the layer's material (Eq. 4 of the paper).
-
-    A normal stress of wavevector q displaces the surface by ``−2 S(q)/(q E0*)`` times its amplitude.
-    ``S(0) = E0*/E1*``, ``S(∞) = 1``. With x = qd, e = exp(−2x):
-    ``S = [1 + 4mxe − mne²] / [1 − (m + n + 4mx²)e + mne²]``.
-
-    Parameters
-    ----------
-    skin : moduli in Pa, thickness in m
-    wavevector : q, 1/m, ≥ 0, shape ``(K,)`` or ``(..., K)``, or a scalar
-
-    Returns
-    -------
-    surface_response : dimensionless, batch shape of ``skin`` plus the axis of ``wavevector``; nan where an argument is impossible
-
-    Notes
-    -----
-    Relative error below 2e-11 for 1 ≤ E0/E1 ≤ 1e7 and below 1e-9 down to E0/E1 = 1e-7 (Eq. 4 evaluated as
-    printed loses six to eight digits for a stiff layer). Frictionless contact: the shear stress at the
-    surface is neglected.
-
-    References
-    ----------
-    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 4).
-
-    Examples
-    --------
-    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
-    >>> print(surface_response(wet, [0.0, 1e5, 1e9]).round(6))
-    [350.         1.703063   1.      ]
-    """
-    q = _wavevector(wavevector)
-    with np.errstate(all="ignore"):
-        return np.asarray(1 / inverse_response(skin, q, min(q.ndim, 1)))[()]
-
-
-def effective_modulus(skin: LayeredSkin, wavevector: ArrayLike) -> FloatArray:
-    """Plane-strain modulus felt by wavevector q, ``E_eff(q) = E0*/S(q)`` (Eqs. 3 and 4 of the paper).
-
-    Parameters
-    ----------
-    skin : moduli in Pa, thickness in m
-    wavevector : q, 1/m, ≥ 0, shape ``(K,)`` or ``(..., K)``, or a scalar
-
-    Returns
-    -------
-    effective_modulus : Pa, batch shape of ``skin`` plus the axis of ``wavevector``; from E1* at q = 0 to E0*
-        at large q; nan where an argument is impossible
-
-    References
-    ----------
-    Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 4).
-
-    Examples
-    --------
-    >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
-    >>> print(f"{effective_modulus(wet, 0.0):.1f} {effective_modulus(wet, 1e9):.0f}")
-    26666.7 9333333
-    """
-    q = _wavevector(wavevector)
-    axes = min(q.ndim, 1)
-    layer = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), axes)
-    with np.errstate(all="ignore"):
-        return np.asarray(layer * inverse_response(skin, q, axes))[()]

@@ -7,9 +7,9 @@ import numpy as np
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact._rows import as_rows, blocks
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation_grid import SeparationGrid, separation_grid
 from skinbayes.contact.separation_tables import closing_function
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 _LOWEST, _HIGHEST = 1e-300, 1e150  # Pa; 0 and inf are put in afterwards
@@ -19,7 +19,7 @@ def mean_separation(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
     *,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
     """Mean separation ū(p) of a rough layered solid pressed against a smooth rigid one.
@@ -61,6 +61,7 @@ def mean_separation(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{mean_separation(6830.0, named_surface('paper_reference'), skin=wet):.4e}")

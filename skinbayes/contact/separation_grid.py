@@ -1,4 +1,4 @@
-"""Wavevectors at which the separation is summed, and what the layered skin contributes at each.
+"""Wavevectors at which the separation is summed, and what the solid contributes at each.
 
 With φ(q) = 1/(q E_eff(q)) and dV = π q³ C E_eff² dq the theory's ``ū = √π ∫ q² C E_eff w I(wp) dq`` is the Stieltjes
 integral ``ū = (1/√π) ∫ φ d[√V Q(p/√V)]``, and by parts
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact.layered import LayeredSkin, _contrast, inverse_response, reduced_modulus
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness._rules import gauss_unit
@@ -55,11 +55,12 @@ class Band(NamedTuple):
 _INNER, _INNER_WEIGHTS = gauss_unit(4)
 _NO_VARIANCE = 1e-300  # Pa²; a plateau without length has V = 0 there, with weight 0
 
-# places of the fractal part crowd about q = 0.6/d within 1.5 of ln q, where a stiff layer makes V rise by decades
+# places of the fractal part crowd about q = 0.6/d within 1.5 of ln q, where a stiff layer makes V rise by decades; without a
+# layer about the knee
 _LAYER_PLACE, _LAYER_WIDTH = np.log(0.6), 1.5
 
 
-def resolve(spectrum: PowerSpectrum, skin: LayeredSkin, places: Places) -> Band:
+def resolve(spectrum: PowerSpectrum, skin: ElasticSolid, places: Places) -> Band:
     """Wavevectors at given places of the band, with V; silences no warnings."""
     if isinstance(spectrum, SelfAffineSpectrum):
         q, stretch, twice_variance = _self_affine(spectrum, skin, places.plateau, places.fractal)
@@ -72,12 +73,13 @@ def resolve(spectrum: PowerSpectrum, skin: LayeredSkin, places: Places) -> Band:
 
 
 def _self_affine(
-    spectrum: SelfAffineSpectrum, skin: LayeredSkin, plateau_share: FloatArray, fractal_share: FloatArray
+    spectrum: SelfAffineSpectrum, skin: ElasticSolid, plateau_share: FloatArray, fractal_share: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     ends = (spectrum.wavevector_min, spectrum.wavevector_rolloff, spectrum.wavevector_max)
     first, knee, last = (np.log(with_axes(end, 1)) for end in ends)
     low, high, zero = knee - first, last - knee, 0 * knee
-    layer = _LAYER_PLACE - np.log(with_axes(skin.layer_thickness, 1)) - knee
+    length = with_axes(skin.transition_length, 1)
+    layer = np.where(np.isfinite(length), _LAYER_PLACE - np.log(length) - knee, zero)
     # everything in ln(q/q_r) = layer + width sinh(angle)
     start, stop = np.arcsinh(-layer / _LAYER_WIDTH), np.arcsinh((high - layer) / _LAYER_WIDTH)
     angle = start + (stop - start) * fractal_share
@@ -92,13 +94,13 @@ def _self_affine(
     width = np.diff(edges)[..., None]
     place = edges[..., :-1, None] + width * _INNER
     flat = (*place.shape[:-2], place.shape[-2] * _INNER.size)
-    stiffness = inverse_response(skin, np.exp(knee + place.reshape(flat)), 1)
+    stiffness = skin.inverse_response(np.exp(knee + place.reshape(flat)), 1)
     power = np.exp(slope[..., None] * place) * (width * _INNER_WEIGHTS)
     terms = np.ascontiguousarray(
         power * np.square(stiffness).reshape(*stiffness.shape[:-1], *place.shape[-2:])
     )
     sums = np.cumsum(terms.sum(axis=-1), axis=-1)
-    modulus = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), 1)
+    modulus = with_axes(skin.surface_modulus, 1)
     scale = np.pi * with_axes(spectrum.plateau_power, 1) * np.square(np.square(np.exp(knee)) * modulus)
     return np.exp(knee + edges[..., 1:]), stretch, scale * sums
 
@@ -133,10 +135,10 @@ _WEIGHTS = np.concatenate([_PLATEAU_WEIGHTS, [0.0], _FRACTAL_WEIGHTS, [0.0]])
 _TABLE_WEIGHTS = np.append(_WHOLE_WEIGHTS, 0.0)
 
 
-def separation_grid(spectrum: PowerSpectrum, skin: LayeredSkin) -> SeparationGrid:
+def separation_grid(spectrum: PowerSpectrum, skin: ElasticSolid) -> SeparationGrid:
     """The grid for a spectrum and a skin, each scalar or batched; silences no warnings."""
     q, stretch, twice_variance = resolve(spectrum, skin, _PLACES)
-    compliance, fall = compliance_fall(skin, q)
+    compliance, fall = skin.compliance_fall(q)
     measure = stretch * (_WEIGHTS if isinstance(spectrum, SelfAffineSpectrum) else _TABLE_WEIGHTS)
     weight = fall * measure * np.sqrt(twice_variance / np.pi)
     weight[..., -1] = compliance[..., -1] * np.sqrt(twice_variance[..., -1] / np.pi)
@@ -147,20 +149,3 @@ def join(*parts: FloatArray) -> FloatArray:
     """The parts one after the other along the last axis; their leading axes broadcast."""
     shape = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
     return np.concatenate([np.broadcast_to(part, (*shape, part.shape[-1])) for part in parts], axis=-1)
-
-
-def compliance_fall(skin: LayeredSkin, wavevector: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """φ = 1/(q E_eff), m/Pa, and ``−dφ/dln q``, batch shape of ``skin`` plus the axis of ``wavevector``."""
-    at_zero, ground, linear, product, four_m = (with_axes(x, 1) for x in _contrast(skin))
-    x = wavevector * with_axes(skin.layer_thickness, 1)
-    rise = np.expm1(-2 * x)
-    decay = 1 + rise
-    bending = four_m * (x * decay)
-    numerator = at_zero - product * (rise * (2 + rise)) + bending
-    denominator = ground + rise * (product * rise - linear) - bending * x
-    numerator_slope = x * decay * (4 * product * decay + four_m * (1 - 2 * x))
-    denominator_slope = 2 * x * decay * (linear - 2 * product * rise - four_m * (x * (1 - x)))
-    stiffening = denominator_slope / denominator - numerator_slope / numerator  # dln E_eff/dln q
-    layer = with_axes(reduced_modulus(skin.young_modulus_layer, skin.poisson_ratio_layer), 1)
-    compliance = numerator / (wavevector * layer * denominator)
-    return np.asarray(compliance), np.asarray(compliance * (1 + stiffening))

@@ -6,9 +6,9 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation import sum_separation_and_slope
 from skinbayes.contact.separation_grid import separation_grid
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum
 
@@ -21,7 +21,7 @@ def pressure_at_separation(
     separation: ArrayLike,
     spectrum: PowerSpectrum,
     *,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     area_correction: ArrayLike = AREA_CORRECTION,
 ) -> FloatArray:
     """Nominal pressure at which the mean separation has a given value, the inverse of `mean_separation`.
@@ -51,6 +51,7 @@ def pressure_at_separation(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{pressure_at_separation(14e-6, named_surface('paper_reference'), skin=wet):.1f}")

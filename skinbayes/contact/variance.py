@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.contact.layered import SATURATION, LayeredSkin, inverse_response
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.roughness._fields import with_axes
 from skinbayes.roughness.spectrum import PowerSpectrum
 
+SATURATION = 10.0
+"""qd above which S is taken as 1 when stresses are summed over wavevectors; S² − 1 is below 4e-7 there."""
+
 
 def twice_stress_variance(
-    spectrum: PowerSpectrum, skin: LayeredSkin, *, wavevector: ArrayLike | None = None
+    spectrum: PowerSpectrum, skin: ElasticSolid, *, wavevector: ArrayLike | None = None
 ) -> FloatArray:
     """Twice the variance of the stress in complete contact, ``V = π ∫ q³ C(q) E_eff(q)² dq = 2 ⟨(σ − p0)²⟩``, Pa².
 
@@ -43,6 +46,7 @@ def twice_stress_variance(
     Examples
     --------
     >>> from skinbayes.roughness import named_surface
+    >>> from skinbayes.contact import LayeredSkin
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> print(f"{twice_stress_variance(named_surface('paper_reference'), wet):.5e}")
     3.36644e+14
@@ -52,10 +56,10 @@ def twice_stress_variance(
     else:
         upper, axes = np.atleast_1d(np.asarray(wavevector, dtype=np.float64)), 1
     with np.errstate(all="ignore"):
-        saturation = SATURATION / skin.layer_thickness
+        saturation = SATURATION / skin.transition_length
         nodes, weights, remainder = spectrum.slope_quadrature(saturation, upper)
         # sums must run along a contiguous last axis, so that a batch and its rows agree to the last bit
-        terms = np.ascontiguousarray(weights * np.square(inverse_response(skin, nodes, axes + 1)))
-        layer = with_axes(skin.young_modulus_layer / (1 - np.square(skin.poisson_ratio_layer)), axes)
-        total = np.pi * np.square(layer) * (terms.sum(axis=-1) + remainder)
+        terms = np.ascontiguousarray(weights * np.square(skin.inverse_response(nodes, axes + 1)))
+        modulus = with_axes(skin.surface_modulus, axes)
+        total = np.pi * np.square(modulus) * (terms.sum(axis=-1) + remainder)
     return np.asarray(total if wavevector is None or np.ndim(wavevector) else total[..., 0])[()]

@@ -259,7 +259,7 @@ def _read_parameters(block: dict[str, Any], where: Any) -> tuple[ParameterSpec, 
         def place(*keys: str, name: str = name) -> str:
             return str(where("parameters", name, *keys))
 
-        specs += parse_levels(quantity, entry, place)
+        specs += parse_levels(quantity, entry, place, may_be_tied=True)
     return tuple(specs)
 
 

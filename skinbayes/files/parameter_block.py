@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any
+from unicodedata import normalize
 
 import numpy as np
 
@@ -30,6 +31,8 @@ class ParameterSpec:
     by_column : whether that is a label column of the rows
     value : SI value of a fixed parameter, else None
     prior : prior of a free parameter in SI, else None
+    same_as, times : the parameter, or one level of it, that a tied one is a multiple of, and the multiple; it has neither value
+        nor prior
     entry : value or prior as it was written, such as ``{"lognormal": ["15 MPa", 0.5]}``; None if nobody wrote it
     source : where value or prior come from, in a sentence
     """
@@ -43,6 +46,8 @@ class ParameterSpec:
     entry: Mapping[str, Any] | None = None
     source: str = ""
     by_column: bool = False
+    same_as: str | None = None
+    times: float = 1.0
 
     @property
     def label(self) -> str:
@@ -51,7 +56,9 @@ class ParameterSpec:
 
     @property
     def prior_text(self) -> str:
-        """Value or prior as it was written: ``lognormal(15 MPa, 0.5)``, ``fixed at 20 um``."""
+        """Value or prior as it was written: ``lognormal(15 MPa, 0.5)``, ``fixed at 20 um``, ``= 0.5 × young_modulus_layer``."""
+        if self.same_as is not None:
+            return f"= {self.same_as}" if self.times == 1 else f"= {self.times:g} × {self.same_as}"
         if self.entry is None:
             return ""
         ((key, written),) = self.entry.items()
@@ -65,6 +72,7 @@ def parse_parameter(
     unit: str | None = None,
     by: str | None = None,
     level: str | None = None,
+    may_be_tied: bool = False,
 ) -> ParameterSpec:
     """Turn ``{ lognormal = ["15 MPa", 0.5], source = "…" }`` or ``{ fixed = "20 um" }`` into a parameter.
 
@@ -74,6 +82,7 @@ def parse_parameter(
     entry : the TOML value: a table, or a bare value, which is fixed
     where : file and key, for messages
     unit : SI unit if other than the quantity's (noise in the unit of the observable)
+    may_be_tied : whether ``{ same_as = "young_modulus_layer", times = 0.5 }`` has a meaning here
 
     Raises
     ------
@@ -91,10 +100,19 @@ def parse_parameter(
     source = entry.get("source", "")
     if not isinstance(source, str):
         raise InputError(f"{where}.source: found {source!r:.60}; expected a sentence in quotes")
+    if "same_as" in entry:
+        if not may_be_tied:
+            raise InputError(
+                f"{where}: only inputs of the forward model, in [parameters], can be tied with 'same_as'"
+            )
+        same_as, times = _parse_tie(entry, where)
+        return ParameterSpec(
+            quantity.name, unit, by, level, None, None, dict(entry), source, same_as=same_as, times=times
+        )
     keys = [key for key in entry if key != "source"]
     unknown = [key for key in keys if key != "fixed" and key not in FAMILIES]
     if unknown:
-        known = ["fixed", *FAMILIES]
+        known = ["fixed", *(["same_as"] if may_be_tied else []), *FAMILIES]
         raise InputError(
             f"{where}: unknown key '{unknown[0]:.60}'.{suggestions(unknown[0], known)} "
             f"Expected one of {', '.join(known)}, and 'source'"
@@ -112,7 +130,11 @@ def parse_parameter(
 
 
 def parse_levels(
-    quantity: Quantity, entry: Any, where: Callable[..., str], unit: str | None = None
+    quantity: Quantity,
+    entry: Any,
+    where: Callable[..., str],
+    unit: str | None = None,
+    may_be_tied: bool = False,
 ) -> list[ParameterSpec]:
     """Turn an entry into one parameter, or into one for each level of the grouping column that it names with ``by``.
 
@@ -120,15 +142,32 @@ def parse_levels(
     `parse_parameter` does, and for a column that cannot group or has no levels.
     """
     if not (isinstance(entry, dict) and "by" in entry):
-        return [parse_parameter(quantity, entry, where(), unit)]
+        return [parse_parameter(quantity, entry, where(), unit, may_be_tied=may_be_tied)]
     column = label_column(entry["by"], where("by"))
     levels = {key: value for key, value in entry.items() if key != "by"}
     if not levels:
         raise InputError(f"{where()}: 'by = \"{column}\"' but no level is given")
     return [
-        replace(parse_parameter(quantity, value, where(level), unit, by=column, level=level), by_column=True)
+        replace(
+            parse_parameter(quantity, value, where(level), unit, column, level, may_be_tied), by_column=True
+        )
         for level, value in levels.items()
     ]
+
+
+def _parse_tie(entry: Mapping[str, Any], where: str) -> tuple[str, float]:
+    """Name and multiple of ``{ same_as = "young_modulus_layer[dry]", times = 0.5, source = "…" }``."""
+    other, times = entry["same_as"], entry.get("times", 1.0)
+    if unknown := sorted(set(entry) - {"same_as", "times", "source"}):
+        raise InputError(
+            f"{where}: unknown key '{unknown[0]:.60}' beside 'same_as'; expected 'times' or 'source'"
+        )
+    if not isinstance(other, str):
+        raise InputError(f"{where}.same_as: found {other!r:.60}; expected the name of a parameter in quotes")
+    number = parse_quantity(times, "1", where=f"{where}.times")
+    if not 0 < number < np.inf:
+        raise InputError(f"{where}.times: found {_as_written(times)}; expected a finite number > 0")
+    return normalize("NFC", other), number
 
 
 def label_column(name: Any, where: str) -> str:

@@ -77,7 +77,7 @@ def written_parameter(entry: Any, unit: str, where: str) -> Any:
     found: dict[str, Any] = {}
     for key, value in entry.items():
         place = f"{where}.{key}"
-        if key in ("source", "by", "same_as"):
+        if key in ("source", "by", "same_as", "times"):
             found[key] = value
         elif key == "fixed":
             found[key] = written_value(value, unit, place)

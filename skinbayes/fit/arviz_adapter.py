@@ -32,6 +32,23 @@ def to_arviz(groups: Mapping[str, xarray.Dataset]) -> Any:
     return xarray.DataTree.from_dict(dict(groups))
 
 
+def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
+    """``ess_bulk``, ``ess_tail`` and, of several chains, ``r_hat``, each ``(D,)``, from samples ``(chains, draws, D)``."""
+    import xarray
+
+    az = arviz()
+    chains = xarray.Dataset({"x": (("chain", "draw", "part"), samples)})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # too few draws are said in words
+        found = {
+            "ess_bulk": az.ess(chains, method="bulk"),
+            "ess_tail": az.ess(chains, method="tail"),
+        }
+        if len(samples) > 1:
+            found["r_hat"] = az.rhat(chains)
+    return {name: np.asarray(values["x"].values, dtype=float) for name, values in found.items()}
+
+
 def standard_error(pointwise: FloatArray) -> float:
     """Standard error of a sum over N data: √(N · variance); NaN for a single datum. ArviZ's own differs by version."""
     count = len(pointwise)

@@ -181,6 +181,15 @@ DIFFERENTIAL_EVOLUTION = Reference(
     "parameter spaces", "moves of the sampler",
     "2006", "Statistics and Computing", "16", "239-249", ("10.1007/s11222-006-8769-1",),
 )  # fmt: skip
+DYNESTY = Reference(
+    "speagle2020dynesty", ("J. S. Speagle",),
+    "dynesty: a dynamic nested sampling package for estimating Bayesian posteriors and evidences", "sampler dynesty",
+    "2020", "Monthly Notices of the Royal Astronomical Society", "493", "3132-3158", ("10.1093/mnras/staa278",),
+)  # fmt: skip
+NESTED_SAMPLING = Reference(
+    "skilling2006nested", ("J. Skilling",), "Nested sampling for general Bayesian computation", "method of the sampler",
+    "2006", "Bayesian Analysis", "1", "833-859", ("10.1214/06-BA127",),
+)  # fmt: skip
 R_HAT = Reference(
     "vehtari2021rank", ("A. Vehtari", "A. Gelman", "D. Simpson", "B. Carpenter", "P.-C. Bürkner"),
     "Rank-Normalization, Folding, and Localization: An Improved R-hat for Assessing Convergence of MCMC", "convergence",

@@ -8,6 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from skinbayes.atomic import write_atomically
+from skinbayes.errors import InputError
 from skinbayes.sealed import DamagedFile, file_digest, read_note, sealed_note
 
 RUN = "run.json"
@@ -19,7 +20,8 @@ STEPS = "steps"
 YARDSTICK_MODELS = "yardstick-models"
 """Folder of the user's own yardsticks inside a run directory."""
 
-FORMAT = "skinbayes run 1"
+MARK = "skinbayes run "
+FORMAT = f"{MARK}2"
 """Under the key ``format`` of ``run.json``: the mark of a run directory. Nobody else writes it by chance."""
 
 
@@ -31,6 +33,7 @@ class Manifest:
     ----------
     model : name of the model
     fingerprint : digest of everything the posterior depends on
+    engine : name of what samples it
     data, surface, rheology : paths of the copies inside the run directory, None if there is none
     settings : values that were given beside the model file, by name, as text
     rows : labels that were selected, by column; None if the data have no rows to select
@@ -39,6 +42,7 @@ class Manifest:
 
     model: str
     fingerprint: str
+    engine: str
     data: str | None = None
     surface: str | None = None
     rheology: str | None = None
@@ -58,17 +62,29 @@ def read_manifest(directory: Path) -> Manifest | None:
     ------
     DamagedFile
         It is not what was written.
+    InputError
+        It is of another version.
     """
     try:
         note = read_note(directory / RUN)
     except FileNotFoundError:
         return None
+    if note.get("format") != FORMAT and str(note.get("format")).startswith(MARK):
+        raise other_version(directory / RUN, note["format"], FORMAT)
     if note.get("format") != FORMAT:
         raise DamagedFile(f"'format' is not {FORMAT!r}")
     for name, accepts in _ACCEPTED.items():
         if not accepts(note.get(name)):
             raise DamagedFile(f"'{name}' is not as this version writes it")
     return Manifest(**{name: note[name] for name in _ACCEPTED})
+
+
+def other_version(file: Path, found: object, expected: object) -> InputError:
+    """What to raise about a whole file of another version of skinbayes."""
+    return InputError(
+        f"{file}: written by another version of skinbayes (format {found!r:.40} found, {expected!r} expected); read it with that "
+        "version, or fit again into a new folder"
+    )
 
 
 def write_manifest(directory: Path, manifest: Manifest) -> None:
@@ -109,6 +125,7 @@ def _labels(value: Any) -> bool:
 _ACCEPTED: dict[str, Callable[[Any], bool]] = {
     "model": _text,
     "fingerprint": _text,
+    "engine": _text,
     "data": lambda value: value is None or _inside(value),
     "surface": lambda value: value is None or _inside(value),
     "rheology": lambda value: value is None or _inside(value),

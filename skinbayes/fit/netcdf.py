@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from skinbayes.errors import InputError
+from skinbayes.fit.manifest import other_version
 from skinbayes.sealed import DamagedFile, checked, sealed
 
 if TYPE_CHECKING:
@@ -27,9 +29,15 @@ NEEDED = (
 )
 """Groups that every result has."""
 
+EACH = {"ess_bulk", "ess_tail", "r_hat"}
+"""Diagnostics that have one number for each parameter; an engine need not have them."""
+
 MOST_GROUPS = 100
 MOST_VARIABLES = 100_000
 """Of one group; more would take minutes to open."""
+
+FORMAT = 2
+"""Of the provenance; 1, which had no number, knew one engine only."""
 
 _RECORD: dict[str, type] = {
     "model": str,
@@ -70,6 +78,8 @@ def read_result(file: Path) -> tuple[dict[str, xarray.Dataset], dict[str, Any], 
     ------
     DamagedFile
         It is not what was written, or holds something else than a result.
+    InputError
+        It is of another version.
     PermissionError
         It must not be read.
     """
@@ -81,7 +91,7 @@ def read_result(file: Path) -> tuple[dict[str, xarray.Dataset], dict[str, Any], 
         groups = {name: xarray.load_dataset(file, group=name, engine="h5netcdf") for name in names}
         groups["posterior"].attrs.pop("skinbayes")
         _require_consistent(groups, provenance)
-    except (DamagedFile, PermissionError):
+    except (DamagedFile, InputError, PermissionError):
         raise
     except (
         Exception
@@ -107,6 +117,8 @@ def _looked_through(path: Path) -> tuple[list[str], dict[str, Any]]:
             for key in group:
                 _require_stored(group, key)
         provenance = json.loads(file["posterior"].attrs["skinbayes"])
+    if isinstance(provenance, dict) and (found := provenance.get("format", 1)) != FORMAT:
+        raise other_version(path, found, FORMAT)
     return names, provenance
 
 
@@ -132,11 +144,12 @@ def _require_consistent(groups: Mapping[str, xarray.Dataset], provenance: Any) -
         if not isinstance(provenance.get(key), kind):
             raise DamagedFile(f"its provenance has no usable '{key}'")
     names, sampling = provenance["names"], provenance["sampling"]
-    for key in ("ess_bulk", "ess_tail", "r_hat"):
+    for key in EACH & set(sampling):
         values = np.asarray(sampling[key])
         if values.shape != (len(names),) or values.dtype.kind not in "fi":
             raise DamagedFile(f"'{key}' is not one number for each parameter")
-    if not names or not isinstance(sampling["converged"], bool):
+    said = isinstance(sampling["verdict"], str) and isinstance(sampling["seed"], int)
+    if not names or not said or not isinstance(sampling["converged"], bool):
         raise DamagedFile("it does not say what was sampled")
     posterior = groups["posterior"]
     for group in ("posterior", "prior"):
@@ -149,6 +162,11 @@ def _require_consistent(groups: Mapping[str, xarray.Dataset], provenance: Any) -
             _require_finite(found.sel(extra), f"{group}/{label}", ("chain", "draw"))
     if groups["sample_stats"]["lp"].shape != (posterior.sizes["chain"], posterior.sizes["draw"]):
         raise DamagedFile("'sample_stats/lp' has not one value for each draw")
+    if "weighted_posterior" in groups:
+        weighted = groups["weighted_posterior"]
+        _require_finite(weighted["theta"], "weighted_posterior/theta", ("chain", "draw", "parameter"))
+        if weighted["parameter"].values.tolist() != names or np.isnan(weighted["log_weight"].values).any():
+            raise DamagedFile("the weighted draws are not those of its parameters")
     for observable in provenance["observables"]:
         rows = groups["observed_data"][observable]
         _require_finite(rows, f"observed_data/{observable}", ("row",))

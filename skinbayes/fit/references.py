@@ -11,11 +11,13 @@ from skinbayes.fit.bibliography import (
     ARVIZ,
     CAPILLARY,
     DIFFERENTIAL_EVOLUTION,
+    DYNESTY,
     ELASTOPLASTIC,
     EMCEE,
     FLOW_FACTORS,
     GAPS,
     MIXED_LUBRICATION,
+    NESTED_SAMPLING,
     PERSSON_2001,
     PERSSON_2013,
     R_HAT,
@@ -36,14 +38,21 @@ BRIDGES = {"surface_tension", "contact_angle_skin", "contact_angle_counterface"}
 LUBRICATED = {"viscosity", "speed_viscosity_product"}
 
 
-def references(problem: Problem) -> list[Reference]:
+METHODS = {
+    "emcee": (EMCEE, DIFFERENTIAL_EVOLUTION, R_HAT),
+    "nested": (DYNESTY, NESTED_SAMPLING),
+}
+"""What to cite for an engine."""
+
+
+def references(problem: Problem, engine: str = "emcee") -> list[Reference]:
     """Theory, data, methods and software that a fit of a problem rests on.
 
     Theory follows from what enters the model: roughness, the correction of small contact areas unless it is 1, a yield stress
     that is finite, capillary bridges, a lubricant. A model without contact mechanics cites none.
     """
     origin = [] if problem.dataset is None else data_reference(problem.dataset)
-    return [*_theory(problem), *origin, EMCEE, DIFFERENTIAL_EVOLUTION, R_HAT, ARVIZ, software()]
+    return [*_theory(problem), *origin, *METHODS.get(engine, ()), ARVIZ, software()]
 
 
 def data_reference(dataset: Dataset) -> list[Reference]:

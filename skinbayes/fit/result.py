@@ -1,36 +1,35 @@
-"""The result of a fit."""
+"""The draws of a fit and what is computed from them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-    from matplotlib.figure import Figure
 
     from skinbayes.problem import Problem
 
 
 @dataclass(frozen=True)
-class Fit:
+class FitResult:
     """Posterior draws of a problem and everything computed from them.
 
     Attributes
     ----------
     groups : the groups of the ArviZ schema by name, each an ``xarray.Dataset``: ``posterior`` (free parameters, and derived
         quantities marked ``kind = derived``), ``sample_stats``, ``prior``, ``prior_predictive``,
-        ``posterior_predictive``, ``log_likelihood``, ``observed_data``, ``constant_data``. A chain is an ensemble; draws
+        ``posterior_predictive``, ``log_likelihood``, ``observed_data``, ``constant_data``. All draws weigh the same; what an
+        engine with weights made is kept in ``weighted_posterior``. Of ``emcee`` a chain is an ensemble; its draws
         are thinned to near independence and ordered in time. All values in SI.
-    provenance : versions, seed, model text, data source, sampler settings and the stopping rule's numbers
+    provenance : versions, model text, data source, and under ``sampling`` engine, seed and its diagnostics by name
     problem : the problem, or None if the result was read from a file whose model or data are gone
     """
 
@@ -62,6 +61,19 @@ class Fit:
             variable = variable.sel({extra: level.removesuffix("]")})
         return np.asarray(variable.values, dtype=float).reshape(-1)
 
+    def quantiles(
+        self, label: str, probabilities: ArrayLike = (0.05, 0.5, 0.95), group: str = "posterior"
+    ) -> FloatArray:
+        """Quantiles of one parameter or derived quantity, SI, shape of ``probabilities``; of parameters with the weights."""
+        weighted = self.groups.get("weighted_posterior") if group == "posterior" else None
+        if weighted is None or label not in self.names:
+            return np.asarray(np.quantile(self.draws(label, group), np.asarray(probabilities, dtype=float)))
+        from skinbayes.sampling.draws import weighted_quantiles
+
+        values = weighted["theta"].values[..., self.names.index(label)].ravel()
+        log_weights = weighted["log_weight"].values.ravel()
+        return weighted_quantiles(values, np.exp(log_weights - log_weights.max()), probabilities)
+
     def theta(self, group: str = "posterior") -> FloatArray:
         """Draws of all free parameters as vectors, shape ``(draws, D)``, SI."""
         return np.stack([self.draws(label, group) for label in self.names], axis=-1)
@@ -89,28 +101,29 @@ class Fit:
         Returns
         -------
         pandas.DataFrame
-            Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), ``ess_bulk``, ``ess_tail``,
-            ``r_hat``, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``. An effective sample size is nan where
-            the run was too short to know it.
+            Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), of ``ess_bulk``, ``ess_tail`` and
+            ``r_hat`` those that the engine has, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``. An
+            effective sample size is nan where the run was too short to know it.
         """
         import pandas
 
-        rows = {}
+        rows: dict[str, dict[str, Any]] = {}
         sampling = self.provenance["sampling"]
-        labels = [*self.names, *(self.derived_labels() if derived else ())]
-        for i, label in enumerate(labels):
-            q05, median, q95 = np.quantile(self.draws(label), [0.05, 0.5, 0.95])
-            prior05, prior50, prior95 = np.quantile(self.draws(label, "prior"), [0.05, 0.5, 0.95])
-            free = i < len(self.names)
+        for label in (*self.names, *(self.derived_labels() if derived else ())):
+            q05, median, q95 = self.quantiles(label)
+            prior05, prior50, prior95 = self.quantiles(label, group="prior")
+            place = self.names.index(label) if label in self.names else None
             rows[label] = {
                 "unit": self.unit(label),
                 "median": median,
                 "q05": q05,
                 "q95": q95,
-                # 0 is said where the autocorrelation has not died out: then it is not known
-                "ess_bulk": (sampling["ess_bulk"][i] or np.nan) if free else np.nan,
-                "ess_tail": (sampling["ess_tail"][i] or np.nan) if free else np.nan,
-                "r_hat": sampling["r_hat"][i] if free else np.nan,
+                # an effective size of 0 is said where the autocorrelation has not died out: then it is not known
+                **{
+                    name: np.nan if place is None else sampling[name][place] or np.nan
+                    for name in ("ess_bulk", "ess_tail", "r_hat")
+                    if name in sampling
+                },
                 "prior_median": prior50,
                 "prior_q05": prior05,
                 "prior_q95": prior95,
@@ -127,75 +140,6 @@ class Fit:
         block = self.provenance.get("derived_symbols", {}).get(name, "")
         symbol = block or str(self.groups["posterior"][name].attrs.get("symbol", name))
         return f"{symbol} ({level.removesuffix(']')})" if level else symbol
-
-    def plot_data(self, width: str | None = None) -> Figure:
-        """Data and model against the condition that varies: load, speed, humidity, time.
-
-        Every figure takes its ``width`` as text with a unit: ``"84 mm"`` for a column of a journal.
-        """
-        from skinbayes.plot import plot_data
-
-        return plot_data(self, width=width)
-
-    def plot_corner(self, width: str | None = None) -> Figure:
-        """Corner plot of the free parameters."""
-        from skinbayes.plot import plot_corner
-
-        return plot_corner(self, width=width)
-
-    def plot_trace(self, width: str | None = None) -> Figure:
-        """Draws against time for each ensemble."""
-        from skinbayes.plot import plot_trace
-
-        return plot_trace(self, width=width)
-
-    def plot_predictive(self, width: str | None = None) -> Figure:
-        """Observed values against the posterior predictive distribution."""
-        from skinbayes.plot import plot_predictive
-
-        return plot_predictive(self, width=width)
-
-    def plot_prior_posterior(self, width: str | None = None) -> Figure:
-        """Prior against posterior of each parameter."""
-        from skinbayes.plot import plot_prior_posterior
-
-        return plot_prior_posterior(self, width=width)
-
-    def plot_prior_predictive(self, width: str | None = None) -> Figure:
-        """Observed values against what the priors alone predict."""
-        from skinbayes.plot import plot_prior_predictive
-
-        return plot_prior_predictive(self, width=width)
-
-    def plot_profile(self, abscissa: str | None = None, width: str | None = None) -> Figure:
-        """Curves of the forward model with posterior bands and data, against one quantity (the first it offers)."""
-        from skinbayes.plot import plot_profile
-
-        return plot_profile(self, abscissa, width)
-
-    def plot_levels(self, column: str | None = None, width: str | None = None) -> Figure:
-        """Data over posterior bands, a panel for each level of a grouping column such as ``person``."""
-        from skinbayes.plot import plot_levels
-
-        return plot_levels(self, column, width=width)
-
-    def plot_effects(self, width: str | None = None) -> Figure:
-        """Effects of groups, and the residuals of their rows."""
-        from skinbayes.plot import plot_effects
-
-        return plot_effects(self, width=width)
-
-    def plot_residuals(self, width: str | None = None) -> Figure:
-        """What is left between data and model, against the abscissa and the conditions."""
-        from skinbayes.plot import plot_residuals
-
-        return plot_residuals(self, width=width)
-
-    def save(self, path: str | Path) -> Path:
-        """Write the result as one netCDF file in the ArviZ schema."""
-        from skinbayes.fit.storage import save_fit
-
-        return save_fit(self, Path(path))
 
     def to_arviz(self) -> Any:
         """The result as ArviZ knows it: ``InferenceData`` for ArviZ below 1, ``xarray.DataTree`` from 1 on."""

@@ -43,7 +43,7 @@ from skinbayes.sampling.watched import WatchedDirectory
 from skinbayes.sealed import put_aside
 
 if TYPE_CHECKING:
-    from skinbayes.fit.result import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.problem import Problem
 
 FOLDERS = ("data", STEPS, YARDSTICK_MODELS)
@@ -61,17 +61,19 @@ class RunDirectory:
     path : the directory; made if it is not there
     problem : what is to be sampled
     resume : the directory may hold a run of this problem, finished or not
+    engine : name of what samples it
 
     Attributes
     ----------
     store : the steps of the sampler
     """
 
-    def __init__(self, path: Path, problem: Problem, resume: bool) -> None:
+    def __init__(self, path: Path, problem: Problem, resume: bool, engine: str = "emcee") -> None:
         self.path = path
         self.store = SampleStore(path / STEPS, resume=resume)
         self._problem = problem
         self._resume = resume
+        self._engine = engine
 
     def __enter__(self) -> RunDirectory:
         """Claim the directory.
@@ -128,6 +130,10 @@ class RunDirectory:
                 f"{self.path}: holds {held.name} with another model, data, prior or version than "
                 f"'{self._problem.name}' here; give another folder"
             )
+        if held.engine != self._engine:
+            raise FingerprintMismatch(
+                f"{self.path}: holds {held.name} with the engine '{held.engine}', not '{self._engine}'; give another folder"
+            )
         for folder in FOLDERS:
             if (self.path / folder).is_symlink():
                 raise InputError(
@@ -139,7 +145,7 @@ class RunDirectory:
         held = self._examine()  # once more, now that nobody else writes here
         self._watched = WatchedDirectory(self.path.absolute())
         remove_leftovers(self.path)
-        self._manifest = self._kept(held) or write_inputs(self.path, self._problem)
+        self._manifest = self._kept(held) or write_inputs(self.path, self._problem, self._engine)
 
     def _kept(self, held: Held | None) -> Manifest | None:
         """What ``run.json`` says if it and the copies are as they were written; what is not is told."""
@@ -162,7 +168,7 @@ class RunDirectory:
         """Raise :class:`FolderGone` if the directory is no longer where it was."""
         self._watched.check()
 
-    def keep(self, fit: Fit) -> None:
+    def keep(self, fit: FitResult) -> None:
         """Write the result, and see that everything is there."""
         self.check()
         try:
@@ -189,11 +195,14 @@ class RunDirectory:
                 if gone is not None:
                     raise MachineError(f"{gone} {self._rescued()}") from error
             if isinstance(error, MemoryError):
-                raise MachineError(f"There is not enough memory. {_continued(self.path)}") from error
+                raise MachineError(f"There is not enough memory. {self._kept_steps()}") from error
             if isinstance(error, MachineError):
-                raise MachineError(f"{error} {_continued(self.path)}") from error
+                raise MachineError(f"{error} {self._kept_steps()}") from error
         finally:
             self._lock.release()
+
+    def _kept_steps(self) -> str:
+        return _continued(self.path) if (self.path / STEPS).is_dir() else "No steps were kept."
 
     def _gone(self) -> FolderGone | None:
         try:
@@ -215,7 +224,7 @@ class RunDirectory:
         try:
             if place is None:
                 raise InputError("no free name")
-            with RunDirectory(place, self._problem, resume=False):
+            with RunDirectory(place, self._problem, False, self._engine):
                 self.store.copy_to(place / STEPS)
         except (InputError, MachineError):
             return "The steps could not be saved elsewhere and are lost."

@@ -33,11 +33,13 @@ class Held:
     ----------
     manifest : what ``run.json`` says; None if it is missing or damaged and the steps alone tell whose run it is
     fingerprint : of its problem
+    engine : that samples it
     damage : what is wrong with ``run.json``, empty if nothing is
     """
 
     manifest: Manifest | None
     fingerprint: str
+    engine: str
     damage: str = ""
 
     @property
@@ -74,10 +76,10 @@ def read_run(directory: Path) -> Held | None:
     except DamagedFile as error:
         manifest, damage = None, f"damaged ({error})"
     if manifest is not None:
-        return Held(manifest, manifest.fingerprint)
+        return Held(manifest, manifest.fingerprint, manifest.engine)
     fingerprint = stored_fingerprint(directory / STEPS)
     if fingerprint is not None:
-        return Held(None, fingerprint, damage)
+        return Held(None, fingerprint, "emcee", damage)  # the engine that stores its steps
     more = len(names) - SHOWN
     found = ", ".join(names[:SHOWN]) + (f" and {more} more" if more > 0 else "")
     hint = f" ({RUN}: {damage})" if RUN in names else ""
@@ -103,7 +105,7 @@ def own_yardsticks(problem: Problem) -> list[Path]:
     return [Path(name) for name in problem.spec.yardsticks if Path(name).suffix == ".toml"]
 
 
-def write_inputs(directory: Path, problem: Problem) -> Manifest:
+def write_inputs(directory: Path, problem: Problem, engine: str) -> Manifest:
     """Put note, model file, data, curves and yardsticks of a problem into its run directory.
 
     What stands there already and differs is put aside and named in a :class:`RepairWarning`.
@@ -144,7 +146,7 @@ def write_inputs(directory: Path, problem: Problem) -> Manifest:
     contents = {name: source.read_bytes() for name, source in copies.items()}
     contents |= {name: text.encode() for name, text in texts.items()}
     files = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
-    manifest = Manifest(problem.name, problem.fingerprint, **note, settings=settings, files=files)
+    manifest = Manifest(problem.name, problem.fingerprint, engine, **note, settings=settings, files=files)
     # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again
     write_manifest(directory, manifest)
     for name, content in contents.items():

@@ -7,9 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes import __version__
-from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError, RepairWarning
+from skinbayes.fit.fit import Fit
 from skinbayes.fit.manifest import (
     RESULT,
     RUN,
@@ -20,21 +19,15 @@ from skinbayes.fit.manifest import (
     read_manifest,
     trouble,
 )
-from skinbayes.fit.netcdf import read_result, result_image
-from skinbayes.fit.result import Fit
+from skinbayes.fit.netcdf import read_result
 from skinbayes.sealed import DamagedFile, file_digest
+from skinbayes.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from skinbayes.files.dataset import Dataset
     from skinbayes.problem import Problem
-
-
-def save_fit(fit: Fit, path: Path) -> Path:
-    """Write a fit as netCDF; the file appears whole or not at all, and shows any damage when it is read."""
-    write_atomically(path, result_image(fit.groups, fit.provenance))
-    return path
 
 
 def load_fit(path: str | Path) -> Fit:
@@ -198,6 +191,8 @@ def _is_same(problem: Problem, provenance: Mapping[str, Any]) -> bool:
             and problem.data_fingerprint == provenance["data"]["fingerprint"]
             and {p.label: p.value for p in problem.fixed}
             == {label: entry["value"] for label, entry in provenance["fixed"].items()}
+            and {p.label: p.prior_text for p in problem.tied}
+            == {label: entry["text"] for label, entry in provenance.get("tied", {}).items()}
             and {p.label: p.prior_text for p in problem.free}
             == {label: entry["text"] for label, entry in provenance["priors"].items()}
         )

@@ -87,6 +87,15 @@ def posterior_groups(
     return groups
 
 
+def weighted_group(problem: Problem, draws: FloatArray, log_weights: FloatArray) -> xarray.Dataset:
+    """The draws of an engine whose draws have weights, as it made them: ``theta`` and ``log_weight``."""
+    variables = {
+        "theta": (("chain", "draw", "parameter"), draws),
+        "log_weight": (("chain", "draw"), log_weights),
+    }
+    return _dataset(variables, draws, {"parameter": list(problem.names)})
+
+
 def columns_to_leave_out(problem: Problem) -> list[str]:
     """Grouping columns whose levels are worth leaving out one at a time: several levels, at least one of several rows."""
     if len(problem.observations) != 1:

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import Inputs
 
+FEW = 64
+"""Rows times vectors below which telling rows apart costs more than evaluating them all."""
+
 
 def along_rows(
     inputs: Inputs, abscissa: str, curve: Callable[[Inputs, FloatArray], dict[str, FloatArray]]
@@ -101,6 +104,8 @@ def on_distinct(inputs: Inputs, function: Callable[[Inputs], FloatArray]) -> Flo
     if not differing:
         return function(inputs)
     count = differing[0].shape[-1]
+    if count * max(table.shape[0] if table.ndim == 2 else 1 for table in tables.values()) < FEW:
+        return function(inputs)
     place = _kinds(differing, count)
     first = _first_of_each(place)
     if len(first) == count:

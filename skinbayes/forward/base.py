@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -87,6 +87,8 @@ class ForwardModel:
     required : inputs that must be given, as a parameter or as a column of conditions; a tuple inside is a set of
         alternatives, each alternative a tuple of names, the first complete one is used
     optional : inputs with default values, SI
+    goes_with : optional or accepted input to the input without which it has no meaning: refused if that is not given, and no
+        default then
     exclusive : further sets of alternatives of which at most one may be given, such as wavevector or magnification
     derived_names : names of the ``derived`` quantities
     blocks : those of them that may stand for the parameters behind them when combinations are named (``rms_slope``)
@@ -118,6 +120,7 @@ class ForwardModel:
     evaluate: Callable[[Inputs, Tables], dict[str, FloatArray]]
     optional: Mapping[str, float] = field(default_factory=dict)
     derived: Callable[[Inputs, Tables], dict[str, FloatArray]] = nothing_derived
+    goes_with: Mapping[str, str] = field(default_factory=dict)
     exclusive: tuple[tuple[tuple[str, ...], ...], ...] = ()
     derived_names: tuple[str, ...] = ()
     blocks: tuple[str, ...] = ()
@@ -164,6 +167,14 @@ class ForwardModel:
         for entry in self.required:
             flat += [entry] if isinstance(entry, str) else [name for names in entry for name in names]
         return tuple(dict.fromkeys(flat))
+
+    def defaults(self, given: Collection[str]) -> dict[str, float]:
+        """Values of the optional inputs that are not given, SI, but for those without a meaning beside what is given."""
+        return {
+            name: float(value)
+            for name, value in self.optional.items()
+            if name not in given and self.goes_with.get(name, "") in ("", *given)
+        }
 
     def input_names(self) -> tuple[str, ...]:
         """All inputs the model takes, sorted; roughness inputs included if it has a surface."""

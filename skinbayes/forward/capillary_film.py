@@ -11,9 +11,10 @@ from skinbayes.arrays import FloatArray
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
+    GOES_WITH,
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
-    SKIN_INPUTS,
+    SOLID_ALTERNATIVES,
     nominal_pressure_of,
     pressure_and_slope,
     skin_of,
@@ -122,7 +123,8 @@ def capillary_film_model(closure: Closure = "gaussian") -> ForwardModel:
         options=CLOSURES,
         variant=capillary_film_model,
         chosen={"closure": closure},
-        required=("film_thickness", *SKIN_INPUTS, PRESSURE_ALTERNATIVES, *WATER_INPUTS),
+        required=("film_thickness", SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES, *WATER_INPUTS),
+        goes_with=GOES_WITH,
         optional=BRIDGED_SKIN_DEFAULTS,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,

@@ -6,11 +6,13 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import effective_modulus, surface_response, twice_stress_variance
-from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
+    GOES_WITH,
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
-    SKIN_INPUTS,
+    SOLID_ALTERNATIVES,
+    SOLID_INPUTS,
     contact_area_of,
     pressure_and_slope,
     skin_of,
@@ -19,8 +21,7 @@ from skinbayes.forward.contact_inputs import (
 )
 from skinbayes.roughness import PowerSpectrum
 
-_ENTERS_VARIANCE = (*SKIN_INPUTS, "poisson_ratio_layer", "poisson_ratio_bulk", "rms_height", "hurst_exponent",
-                    "wavevector_min", "wavevector_rolloff", "wavevector_max")  # fmt: skip
+_ENTERS_VARIANCE = (*SOLID_INPUTS, *ROUGHNESS_INPUTS)
 
 
 def wavevector_of(inputs: Inputs, spectrum: PowerSpectrum) -> FloatArray:
@@ -86,7 +87,7 @@ CONTACT_AREA_PROFILE = Profile(
 
 MODEL = ForwardModel(
     name="contact-area",
-    summary="relative contact area of layered, rough, elastoplastic skin against wavevector or magnification",
+    summary="relative contact area of rough elastoplastic skin or another solid against wavevector or magnification",
     observables=(
         "relative_contact_area",
         "relative_contact_area_elastic",
@@ -95,7 +96,8 @@ MODEL = ForwardModel(
         "surface_response",
         "effective_modulus",
     ),
-    required=(*SKIN_INPUTS, PRESSURE_ALTERNATIVES),
+    required=(SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES),
+    goes_with=GOES_WITH,
     optional=SKIN_DEFAULTS,
     accepted=("wavevector", "magnification"),
     exclusive=((("wavevector",), ("magnification",)),),

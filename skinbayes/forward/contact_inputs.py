@@ -8,13 +8,14 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
     ContactArea,
+    HomogeneousSolid,
     LayeredSkin,
     elastoplastic_contact_area,
-    reduced_modulus,
     sphere_contact,
     twice_stress_variance,
-    validate_skin,
+    validate_solid,
 )
+from skinbayes.errors import InputError
 from skinbayes.forward.alike_rows import on_distinct
 from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs, Tables
 from skinbayes.roughness import (
@@ -28,9 +29,23 @@ from skinbayes.roughness import (
 
 SKIN_INPUTS = ("young_modulus_layer", "young_modulus_bulk", "layer_thickness")
 
+SOLID_ALTERNATIVES = (SKIN_INPUTS, ("young_modulus",))
+"""How the solid can be given: layered skin, or one of a single material."""
+
+SOLID_INPUTS = (*SKIN_INPUTS, "young_modulus", "poisson_ratio_layer", "poisson_ratio_bulk", "poisson_ratio")
+"""All inputs that may belong to the solid."""
+
+GOES_WITH = {
+    "poisson_ratio_layer": "layer_thickness",
+    "poisson_ratio_bulk": "layer_thickness",
+    "poisson_ratio": "young_modulus",
+}
+"""Inputs of one kind of solid, which have no meaning for the other."""
+
 SKIN_DEFAULTS = {
     "poisson_ratio_layer": 0.5,
     "poisson_ratio_bulk": 0.5,
+    "poisson_ratio": 0.5,
     "yield_stress": np.inf,
     "area_correction": AREA_CORRECTION,
 }
@@ -58,8 +73,10 @@ def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     return table
 
 
-def skin_of(inputs: Inputs) -> LayeredSkin:
-    """Return the layered skin of ``inputs``."""
+def skin_of(inputs: Inputs) -> LayeredSkin | HomogeneousSolid:
+    """Return the solid of ``inputs``: layered skin, or a homogeneous one where ``young_modulus`` is given."""
+    if "young_modulus" in inputs:
+        return HomogeneousSolid(young_modulus=inputs["young_modulus"], poisson_ratio=inputs["poisson_ratio"])
     return LayeredSkin(
         young_modulus_layer=inputs["young_modulus_layer"],
         young_modulus_bulk=inputs["young_modulus_bulk"],
@@ -70,15 +87,15 @@ def skin_of(inputs: Inputs) -> LayeredSkin:
 
 
 def nominal_pressure_of(inputs: Inputs) -> FloatArray:
-    """Return p0 [Pa]: as given, load over nominal area, or the mean Hertz pressure of a sphere on the soft bulk.
+    """Return p0 [Pa]: as given, load over nominal area, or the mean Hertz pressure of a sphere on the solid.
 
-    The Hertz pressure uses the modulus of the tissue below the layer: the layer is far thinner than the contact is wide.
+    On skin the Hertz pressure uses the modulus of the tissue below the layer: the layer is far thinner than the contact is wide.
     """
     if "nominal_pressure" in inputs:
         return np.asarray(inputs["nominal_pressure"], dtype=float)
     if "nominal_contact_area" in inputs:
         return np.asarray(inputs["normal_force"] / inputs["nominal_contact_area"], dtype=float)
-    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
+    modulus = skin_of(inputs).contact_modulus
     return np.asarray(
         sphere_contact(
             inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus
@@ -95,15 +112,26 @@ def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     }
 
 
+def check_one_solid(inputs: Inputs) -> None:
+    """Raise InputError if layered skin and a homogeneous solid are both given, even in part."""
+    layered = [name for name in inputs if name in SKIN_INPUTS or name.startswith("young_modulus_layer")]
+    if "young_modulus" in inputs and layered:
+        raise InputError(
+            f"young_modulus and {layered[0]} exclude each other: the solid is homogeneous, of young_modulus alone, "
+            f"or layered, of {', '.join(SKIN_INPUTS)}"
+        )
+
+
 def validate_contact(inputs: Inputs, tables: Tables) -> None:
-    """Raise InputError naming the input of spectrum or skin that cannot be, such as a roll-off below the band."""
+    """Raise InputError naming the input of spectrum or solid that cannot be, such as a roll-off below the band."""
+    check_one_solid(inputs)
     spectrum = spectrum_of(inputs, tables)
     if isinstance(spectrum, SelfAffineSpectrum):
         validate_spectrum(spectrum)
-    validate_skin(skin_of(inputs))
+    validate_solid(skin_of(inputs))
 
 
-_ENTERS_VARIANCE = (*SKIN_INPUTS, "poisson_ratio_layer", "poisson_ratio_bulk", *ROUGHNESS_INPUTS)
+_ENTERS_VARIANCE = (*SOLID_INPUTS, *ROUGHNESS_INPUTS)
 
 
 def variance_of(inputs: Inputs, tables: Tables) -> FloatArray:

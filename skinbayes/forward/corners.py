@@ -5,13 +5,11 @@ from __future__ import annotations
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Box
 from skinbayes.forward.base import ROUGHNESS_INPUTS, Ranges
-from skinbayes.forward.contact_inputs import PRESSURE_ALTERNATIVES, SKIN_INPUTS
+from skinbayes.forward.contact_inputs import PRESSURE_ALTERNATIVES, SOLID_INPUTS
 
 CONTACT_INPUTS = (
-    *SKIN_INPUTS,
+    *SOLID_INPUTS,
     *ROUGHNESS_INPUTS,
-    "poisson_ratio_layer",
-    "poisson_ratio_bulk",
     "area_correction",
     *(name for names in PRESSURE_ALTERNATIVES for name in names),
 )

@@ -14,6 +14,7 @@ from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_s
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
     DRYING_DEFAULTS,
+    DRYING_GOES_WITH,
     DRYING_INPUTS,
     evaporation_rate_of,
     explain_evaporation,
@@ -103,6 +104,7 @@ def drying_model(closure: Closure = "gaussian") -> ForwardModel:
         chosen={"closure": closure},
         required=("time", *DRYING_INPUTS),
         optional=DRYING_DEFAULTS,
+        goes_with=DRYING_GOES_WITH,
         accepted=DRYING_ACCEPTED,
         costly=True,
         prepare=prepared_drying if closure == "gaussian" else None,

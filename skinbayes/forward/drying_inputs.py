@@ -8,6 +8,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS, Closure
 from skinbayes.forward.contact_inputs import (
+    GOES_WITH,
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
     SKIN_INPUTS,
@@ -34,13 +35,21 @@ EVAPORATION_ALTERNATIVES = (
 )
 """How evaporation can be given; the first complete alternative is used."""
 
+DRYING_SOLIDS = ((*SKIN_INPUTS, "young_modulus_layer_dry"), ("young_modulus",))
+"""How the solid can be given: skin whose layer hardens as it dries, or a homogeneous solid, which stays as it is."""
+
+DRYING_GOES_WITH = {
+    **GOES_WITH,
+    **dict.fromkeys(("hardening_film", "hardening_sharpness"), "young_modulus_layer_dry"),
+}
+"""Inputs that have no meaning for one of them."""
+
 DRYING_INPUTS = (
     "wetting_time",
     FILM_ALTERNATIVES,
     EVAPORATION_ALTERNATIVES,
     "frictional_shear_stress",
-    *SKIN_INPUTS,
-    "young_modulus_layer_dry",
+    DRYING_SOLIDS,
     PRESSURE_ALTERNATIVES,
     *WATER_INPUTS,
 )
@@ -103,12 +112,12 @@ def film_contact_of(
         surface_tension=inputs["surface_tension"],
         contact_angle_skin=inputs["contact_angle_skin"],
         contact_angle_counterface=inputs["contact_angle_counterface"],
-        young_modulus_layer_dry=inputs["young_modulus_layer_dry"],
+        young_modulus_layer_dry=inputs.get("young_modulus_layer_dry"),
         yield_stress=inputs["yield_stress"],
         area_correction=inputs["area_correction"],
         closure=closure,
         film_floor=inputs["film_floor"],
         hardening_film=inputs.get("hardening_film"),
-        hardening_sharpness=inputs["hardening_sharpness"],
+        hardening_sharpness=inputs.get("hardening_sharpness", 2.0),
         table=table,
     )

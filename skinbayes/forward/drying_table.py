@@ -48,7 +48,8 @@ def table_over(
     groups = skin_groups(
         load, pull, height=height, spectrum=spectrum, skin=skin, area_correction=inputs["area_correction"]
     )
-    depth = float(np.max(load / np.asarray(skin.young_modulus_bulk))) / known["film_floor"][0]
+    modulus = inputs["young_modulus" if "young_modulus" in inputs else "young_modulus_bulk"]
+    depth = float(np.max(load / modulus)) / known["film_floor"][0]
     return bridge_table(Box.around(groups), depth=depth, spectrum=tables.spectrum, progress=progress)
 
 
@@ -56,7 +57,7 @@ def prepared_drying(
     model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
 ) -> ForwardModel:
     """Return a model of drying skin whose evaluation takes a ``table`` with the table for ``ranges``, if there is one."""
-    table = table_over(ranges, dict(model.optional), tables, progress)
+    table = table_over(ranges, model.defaults(ranges), tables, progress)
     if table is None:
         return model
     return replace(

@@ -6,9 +6,10 @@ from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_area import CONTACT_AREA_PROFILE
 from skinbayes.forward.contact_inputs import (
+    GOES_WITH,
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
-    SKIN_INPUTS,
+    SOLID_ALTERNATIVES,
     contact_area_of,
     nominal_pressure_of,
     spectrum_of,
@@ -43,7 +44,8 @@ MODEL = ForwardModel(
     name="friction",
     summary="friction coefficient of skin on a smooth hard surface: shear stress times area of real contact over load",
     observables=("friction_coefficient",),
-    required=("frictional_shear_stress", *SKIN_INPUTS, PRESSURE_ALTERNATIVES),
+    required=("frictional_shear_stress", SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES),
+    goes_with=GOES_WITH,
     optional=SKIN_DEFAULTS,
     evaluate=_evaluate,
     validate=validate_contact,

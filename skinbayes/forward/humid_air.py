@@ -19,12 +19,20 @@ from skinbayes.contact import total_contact_area, twice_stress_variance
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
-from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, skin_of, spectrum_of
+from skinbayes.forward.contact_inputs import (
+    GOES_WITH,
+    SOLID_INPUTS,
+    nominal_pressure_of,
+    pressure_and_slope,
+    skin_of,
+    spectrum_of,
+)
 from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
     CURVE_INPUTS,
     HUMID_AIR_DEFAULTS,
     HUMID_AIR_INPUTS,
+    MODULUS_ALTERNATIVES,
     bridges_form,
     kelvin_gap_of,
     kelvin_radius_of,
@@ -53,11 +61,7 @@ FLAGS = {
 _PRESSES = {
     *AIR_INPUTS,
     *ROUGHNESS_INPUTS,
-    "young_modulus_layer",
-    "young_modulus_bulk",
-    "layer_thickness",
-    "poisson_ratio_layer",
-    "poisson_ratio_bulk",
+    *SOLID_INPUTS,
     "area_correction",
     "nominal_pressure",
 }
@@ -195,6 +199,8 @@ def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
         variant=humid_air_model,
         chosen={"closure": closure},
         required=HUMID_AIR_INPUTS,
+        exclusive=(MODULUS_ALTERNATIVES,),
+        goes_with=GOES_WITH,
         optional=HUMID_AIR_DEFAULTS,
         costly=True,
         prepare=prepared_humid_air if closure == "gaussian" else None,

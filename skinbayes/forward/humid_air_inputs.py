@@ -11,6 +11,7 @@ from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import (
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
+    check_one_solid,
     nominal_pressure_of,
     validate_contact,
 )
@@ -33,6 +34,12 @@ CURVE_INPUTS = (
 MODULUS_ALTERNATIVES = (("young_modulus_layer",), CURVE_INPUTS)
 """How the modulus of the layer can be given: itself, the same in all rows or one for each, or a curve against humidity."""
 
+HUMID_SOLIDS = (
+    *((*names, "young_modulus_bulk", "layer_thickness") for names in MODULUS_ALTERNATIVES),
+    ("young_modulus",),
+)
+"""How the solid can be given: skin with either modulus of its layer, or a homogeneous solid, which is the same in any air."""
+
 TEMPERATURE_ALTERNATIVES = (("temperature",), ("air_temperature", "surface_temperature"))
 """One temperature of skin and air alike, or that of the air in which the humidity was measured and that of the skin."""
 
@@ -49,9 +56,7 @@ HUMID_AIR_INPUTS = (
     "contact_angle_skin",
     "contact_angle_counterface",
     "frictional_shear_stress",
-    MODULUS_ALTERNATIVES,
-    "young_modulus_bulk",
-    "layer_thickness",
+    HUMID_SOLIDS,
     PRESSURE_ALTERNATIVES,
 )
 """Required inputs of all models of skin in humid air."""
@@ -78,7 +83,7 @@ def at_skin(inputs: Inputs) -> dict[str, FloatArray]:
 def with_modulus(inputs: Inputs) -> dict[str, FloatArray]:
     """Return the inputs at the skin, with ``young_modulus_layer`` [Pa] in place of its curve: as given, or that of the curve."""
     known = {name: value for name, value in at_skin(inputs).items() if name not in CURVE_INPUTS}
-    if "young_modulus_layer" not in known:
+    if "young_modulus_layer" not in known and "young_modulus" not in known:
         curve = young_modulus_at_humidity(
             known["relative_humidity"],
             inputs["young_modulus_layer_dry"],
@@ -133,6 +138,7 @@ def pull_of(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
 
 def validate_humid_air(inputs: Inputs, tables: Tables) -> None:
     """Raise InputError naming the input that cannot be: two ways to give modulus or temperature, ice, or as in any contact."""
+    check_one_solid(inputs)
     curve = [name for name in CURVE_INPUTS if name in inputs]
     if "young_modulus_layer" in inputs and curve:
         raise InputError(

@@ -12,7 +12,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Box, Progress
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Ranges, Tables
-from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
+from skinbayes.forward.contact_inputs import GOES_WITH, nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
@@ -23,7 +23,7 @@ from skinbayes.forward.humid_air_inputs import (
 from skinbayes.roughness import rms_height
 from skinbayes.wetting import HumidTable, humid_groups, humid_table
 
-_SHAPE = (*ROUGHNESS_INPUTS[1:], "poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+_SHAPE = (*ROUGHNESS_INPUTS[1:], *GOES_WITH, "area_correction")
 """What the table does not interpolate in."""
 
 _DRIEST, _WET, _WETTEST = 0.04, 0.998, 0.9999
@@ -50,22 +50,12 @@ class TabulatedPull:
         height = rms_height(spectrum_of(inputs, tables))
         load, skin = inputs["nominal_pressure"], skin_of(inputs)
         same = np.logical_and.reduce([inputs[name] == value for name, value in self.shape.items()])
-        parts = (
-            gap,
-            strength,
-            height,
-            load,
-            same,
-            wetted,
-            skin.young_modulus_layer,
-            skin.young_modulus_bulk,
-            skin.layer_thickness,
-        )
+        parts = (gap, strength, height, load, same, wetted, *vars(skin).values())
         shape = np.broadcast_shapes(*(np.shape(part) for part in parts))
-        gap, strength, height, load, same, wetted, layer, bulk, thickness = (
+        gap, strength, height, load, same, wetted, *own = (
             np.broadcast_to(part, shape).reshape(-1) for part in parts
         )
-        flat = replace(skin, young_modulus_layer=layer, young_modulus_bulk=bulk, layer_thickness=thickness)
+        flat = type(skin)(**dict(zip(vars(skin), own, strict=True)))
         # neither without bridges nor in a flooded gap does anything pull
         bridged = wetted & np.isfinite(gap)
         with np.errstate(all="ignore"):
@@ -98,7 +88,7 @@ def pull_over(
     progress : called with the number of skins computed and their total
     """
     known = known_ranges(ranges, optional)
-    if "young_modulus_layer" not in known:
+    if "young_modulus_layer_dry" in known:
         moduli = (*known["young_modulus_layer_dry"], *known["young_modulus_layer_wet"])
         known["young_modulus_layer"] = (min(moduli), max(moduli))
     shape = {name: known[name][0] for name in _SHAPE if name in known}
@@ -134,7 +124,7 @@ def prepared_humid_air(
     model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
 ) -> ForwardModel:
     """Return a model of skin in humid air whose functions take a ``table`` with the table for ``ranges``, if there is one."""
-    table = pull_over(ranges, dict(model.optional), tables, progress)
+    table = pull_over(ranges, model.defaults(ranges), tables, progress)
     if table is None:
         return model
     return replace(

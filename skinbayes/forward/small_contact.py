@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import reduced_modulus, sphere_contact
+from skinbayes.contact import sphere_contact
 from skinbayes.forward.base import Inputs, Tables
-from skinbayes.forward.contact_inputs import nominal_pressure_of, spectrum_of
+from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.roughness import SelfAffineSpectrum
 
 ENOUGH_WAVELENGTHS = 5.0
@@ -29,7 +29,7 @@ def contact_width(inputs: Inputs) -> FloatArray:
         return np.full(pressure.shape, np.inf)
     if "nominal_contact_area" in inputs:
         return np.asarray(2 * np.sqrt(inputs["nominal_contact_area"] / np.pi) + 0 * pressure)
-    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
+    modulus = skin_of(inputs).contact_modulus
     return np.asarray(
         2
         * sphere_contact(

@@ -7,7 +7,13 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
-from skinbayes.forward.contact_inputs import SKIN_DEFAULTS, SKIN_INPUTS, spectrum_of, validate_contact
+from skinbayes.forward.contact_inputs import (
+    GOES_WITH,
+    SKIN_DEFAULTS,
+    SOLID_ALTERNATIVES,
+    spectrum_of,
+    validate_contact,
+)
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     FLAGS,
@@ -67,7 +73,14 @@ MODEL = ForwardModel(
     name="stribeck",
     summary="friction of a ball on lubricated rough skin, its boundary, Couette and pressure-flow parts, and the films",
     observables=tuple(FIELDS),
-    required=("frictional_shear_stress", "sphere_radius", "normal_force", *SKIN_INPUTS, SPEED_ALTERNATIVES),
+    required=(
+        "frictional_shear_stress",
+        "sphere_radius",
+        "normal_force",
+        SOLID_ALTERNATIVES,
+        SPEED_ALTERNATIVES,
+    ),
+    goes_with=GOES_WITH,
     optional={
         **{name: value for name, value in SKIN_DEFAULTS.items() if name != "yield_stress"},
         "velocity_shift_factor": 1.0,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import LayeredSkin, cylinder_of_sphere, reduced_modulus
+from skinbayes.contact import cylinder_of_sphere
 from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
@@ -114,7 +114,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
 
 def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.bool_]]:
     """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast."""
-    modulus = reduced_modulus(inputs["young_modulus_bulk"], inputs["poisson_ratio_bulk"])
+    modulus = skin_of(inputs).contact_modulus
     cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)
     with np.errstate(invalid="ignore"):
         share = 3 * np.pi * products * inputs["velocity_shift_factor"] / np.asarray(cylinder.load_per_length)
@@ -144,7 +144,7 @@ def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str,
             tables.flow_curves[int(number[_CURVE])],
             sphere_radius=number["sphere_radius"],
             normal_force=number["normal_force"],
-            skin=LayeredSkin(**{name: float(np.asarray(part)) for name, part in vars(skin).items()}),
+            skin=type(skin)(**{name: float(np.asarray(part)) for name, part in vars(skin).items()}),
             spectrum=spectrum_of(one, tables),
             frictional_shear_stress=number["frictional_shear_stress"],
             area_correction=number["area_correction"],

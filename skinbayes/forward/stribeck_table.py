@@ -20,6 +20,7 @@ from skinbayes.forward.stribeck_direct import (
 )
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
+    HOMOGENEOUS_PARAMETERS,
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
@@ -42,6 +43,8 @@ AFTERWARDS = (
     "sliding_speed", "inlet_film_limit",
 )  # fmt: skip
 """Inputs that enter exactly, whatever the table."""
+
+_HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])  # axes of the table, if they vary
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +82,7 @@ class TabulatedStribeck:
         return self._friction(inputs, tables)[1]
 
     def _friction(self, inputs: Inputs, tables: Tables) -> tuple[dict[str, FloatArray], FloatArray]:
-        parameters = {name: inputs[name] for name in FILM_PARAMETERS if name in inputs}
+        parameters = {name: inputs[name] for name in _HELD if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
         others: Any = {
@@ -125,7 +128,7 @@ def prepare(
     varying = [
         name
         for name, (low, high) in ranges.items()
-        if low != high and name in names and name not in (*FILM_PARAMETERS, *AFTERWARDS)
+        if low != high and name in names and name not in (*_HELD, *AFTERWARDS)
     ]
     if varying:
         return replace(
@@ -134,13 +137,14 @@ def prepare(
             f"{' and '.join(varying)} {'varies' if len(varying) == 1 else 'vary'}.",
         )
     fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
-    from skinbayes.forward.contact_inputs import spectrum_of
+    from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
 
     spectrum = spectrum_of(fixed, tables)
-    held = {name: ranges[name] for name in FILM_PARAMETERS if name in ranges}
+    held = {name: ranges[name] for name in _HELD if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
     fixed_for_table: Any = {
-        name: float(fixed[name]) for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+        name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
+        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
     } | {"largest_strain": float(fixed["strain_limit"])}
 
     def build(unfinished: Unfinished) -> Stored:

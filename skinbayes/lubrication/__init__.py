@@ -9,7 +9,7 @@ from skinbayes.lubrication.asperities import (
 )
 from skinbayes.lubrication.effective_viscosity import EffectiveViscosity, stribeck_curve_of_liquid
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_axes
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS, FilmAxes, film_axes
 from skinbayes.lubrication.film_table import FilmTable
 from skinbayes.lubrication.film_table_build import build_film_table
 from skinbayes.lubrication.film_table_evaluation import (
@@ -44,6 +44,7 @@ from skinbayes.lubrication.stribeck import (
 
 __all__ = [
     "FILM_PARAMETERS",
+    "HOMOGENEOUS_PARAMETERS",
     "LARGEST_STRAIN",
     "LARGE_STRAIN",
     "NODES",

@@ -10,8 +10,8 @@ from scipy.interpolate import PchipInterpolator
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.separation import mean_separation
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.errors import InputError
 from skinbayes.roughness.spectrum import PowerSpectrum
@@ -82,7 +82,7 @@ class AsperityLaw:
 
 
 def asperity_law(
-    spectrum: PowerSpectrum, skin: LayeredSkin, *, area_correction: ArrayLike = AREA_CORRECTION
+    spectrum: PowerSpectrum, skin: ElasticSolid, *, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityLaw:
     """Asperity law of a rough layered surface, from its mean separation (Sect. 5 and Sect. 6.2 of the paper).
 
@@ -114,6 +114,7 @@ def asperity_law(
     Examples
     --------
     >>> import numpy as np
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> law = asperity_law(named_surface("paper_reference"), wet)
@@ -124,7 +125,7 @@ def asperity_law(
 
 
 def asperity_table(
-    spectrum: PowerSpectrum, skin: LayeredSkin, *, area_correction: ArrayLike = AREA_CORRECTION
+    spectrum: PowerSpectrum, skin: ElasticSolid, *, area_correction: ArrayLike = AREA_CORRECTION
 ) -> AsperityTable:
     """Mean separations and asperity pressures of many surfaces at once (Sect. 5 and Sect. 6.2 of the paper).
 
@@ -144,6 +145,7 @@ def asperity_table(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> table = asperity_table(named_surface("paper_reference"), wet)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES, lubricated_films
@@ -47,7 +47,7 @@ def stribeck_curve_of_liquid(
     normal_force: float,
     sphere_radius: float,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     frictional_shear_stress: float,
     area_correction: float = AREA_CORRECTION,
     velocity_shift_factor: float = 1.0,
@@ -97,6 +97,7 @@ def stribeck_curve_of_liquid(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> surface = named_surface("paper_reference")
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
@@ -113,7 +114,7 @@ def stribeck_curve_of_liquid(
             f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number >= 0 m/s."
         )
     liquids = liquid_rows([flow_curve]).at(np.zeros(speed.size, dtype=np.intp))
-    modulus = float(reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk))
+    modulus = float(skin.contact_modulus)
     cylinder = cylinder_of_sphere(normal_force, sphere_radius, reduced_modulus=modulus)
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     law = law_of_table(*table) if is_lawful(*table) else None

@@ -10,20 +10,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact.layered import reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
+from skinbayes.contact.solid import reduced_modulus
 from skinbayes.errors import InputError
 
 FILM_PARAMETERS = (
     "young_modulus_layer", "young_modulus_bulk", "rms_height", "sphere_radius", "normal_force", "layer_thickness",
 )  # fmt: skip
 """Parameters of the film, in the order of all arrays; SI."""
+
+HOMOGENEOUS_PARAMETERS = ("young_modulus", *FILM_PARAMETERS[2:5])
+"""Parameters of the film of a ball on a homogeneous solid; SI."""
 
 UNITS = ("Pa", "Pa", "m", "m", "N", "m")
 
@@ -48,7 +51,7 @@ _FIRST_NODES = 4
 _INVARIANT_NODES = (0.8, 0.85, 0.7, 0.8)
 _PARAMETER_NODES = (0.8, 1.0, 0.9, 1.1, 0.8, 0.7)
 
-_STRAIN = 3  # the invariant F R/E1
+_STRAIN = "normal_force"  # what the name of the invariant F R/E1 starts with
 _SLACK = 1e-9  # of ln: how far rounding may carry a parameter out of its range
 
 FULLEST = 0.3
@@ -108,6 +111,8 @@ def film_scales(log_parameters: Sequence[FloatArray], poisson_ratio_bulk: float)
 class FilmAxes:
     """Axes of a table: linear combinations of the ln of the `FILM_PARAMETERS`, each scaled to −1 … 1.
 
+    Those of a homogeneous solid have E0 = E1 = E, and a thickness that does not matter.
+
     Attributes
     ----------
     names : what each axis is, A names
@@ -123,6 +128,7 @@ class FilmAxes:
     end : the coordinate of that end is ``end @ ln p − end_offset``, dimensionless, shape ``(6,)``
     end_offset : dimensionless
     counts : number of nodes of each axis, dimensionless, A integers
+    homogeneous : the solid has no layer
     """
 
     names: tuple[str, ...]
@@ -138,6 +144,7 @@ class FilmAxes:
     end: FloatArray
     end_offset: float
     counts: tuple[int, ...]
+    homogeneous: bool = False
 
     def coordinates(self, log_parameters: Sequence[FloatArray]) -> list[FloatArray]:
         """Coordinates, dimensionless, −1 … 1 inside; each has the common shape of the parameters that enter it."""
@@ -173,10 +180,16 @@ class FilmAxes:
         plain = np.array(coordinates, dtype=np.float64)
         if self.ended >= 0:
             # where the end is depends on the other axes only
-            others = self.reference + (plain - at_reference) @ inverse.T
+            others = self.tied(self.reference + (plain - at_reference) @ inverse.T)
             shrink = (1 - self._end(list(np.moveaxis(others, -1, 0)))) / 2
             plain[..., self.ended] = self.side * ((1 + self.side * plain[..., self.ended]) * shrink - 1)
-        return np.asarray(self.reference + (plain - at_reference) @ inverse.T)
+        return self.tied(self.reference + (plain - at_reference) @ inverse.T)
+
+    def tied(self, log_parameters: FloatArray) -> FloatArray:
+        """The same ln of parameters, shape ``(..., 6)``, with E0 = E1 if the solid is homogeneous."""
+        if self.homogeneous:
+            log_parameters[..., 0] = log_parameters[..., 1]
+        return log_parameters
 
 
 def _combine(row: FloatArray, log_parameters: Sequence[FloatArray]) -> FloatArray:
@@ -206,7 +219,8 @@ def film_axes(
 
     Parameters
     ----------
-    ranges : smallest and largest value of each of the `FILM_PARAMETERS`, SI (Pa, m, N); equal for a fixed one
+    ranges : smallest and largest value of each of the `FILM_PARAMETERS`, or of the `HOMOGENEOUS_PARAMETERS`, SI (Pa, m, N);
+        equal for a fixed one
     poisson_ratio_bulk : ν1, dimensionless
     counts : number of nodes of an axis, dimensionless, by its name; from the width of its range unless told otherwise
     largest_strain : b/Rc, dimensionless, beyond which no contact is wanted; it shortens the axis F R/E1
@@ -235,32 +249,42 @@ def film_axes(
     'normal_force × sphere_radius / young_modulus_bulk'
     """
     low, high = range_logarithms(ranges)
+    homogeneous = "young_modulus" in ranges
+    if homogeneous:
+        low[0] = high[0] = (low[1] + high[1]) / 2  # it goes with E1
+    kept = [1, 3] if homogeneous else list(range(len(_INVARIANTS)))
+    spoken = [
+        name.removesuffix("_bulk") if homogeneous else name for name in (*_INVARIANT_NAMES, *FILM_PARAMETERS)
+    ]
+    invariants, invariant_names = _INVARIANTS[kept], [spoken[row] for row in kept]
     reference = (low + high) / 2
     varying = np.flatnonzero(high > low)
-    influence = _INVARIANTS[:, varying]
+    influence = invariants[:, varying]
     rows = np.flatnonzero(np.abs(influence).any(axis=1))
     if len(varying) <= len(rows):
-        names = tuple(FILM_PARAMETERS[place] for place in varying)
+        names = tuple(spoken[len(_INVARIANTS) + place] for place in varying)
         chosen, inverse = _solve_for(influence, len(varying))
-        combination = inverse @ _INVARIANTS[chosen]
+        combination = inverse @ invariants[chosen]
         density = [_PARAMETER_NODES[place] for place in varying]
     else:
-        names = tuple(_INVARIANT_NAMES[row] for row in rows)
-        combination = _INVARIANTS[rows]
-        density = [_INVARIANT_NODES[row] for row in rows]
+        names = tuple(invariant_names[row] for row in rows)
+        combination = invariants[rows]
+        density = [_INVARIANT_NODES[kept[row]] for row in rows]
     # the force last: it is the one that differs from row to row of a data set
     order = sorted(range(len(names)), key=lambda place: bool(combination[place, 4]))
     names = tuple(names[place] for place in order)
     combination = combination[order].reshape(-1, 6)
     start = np.where(combination > 0, combination * low, combination * high).sum(axis=1)
     end = np.where(combination > 0, combination * high, combination * low).sum(axis=1)
-    if len(varying) > len(rows) and _INVARIANT_NAMES[_STRAIN] in names and largest_strain < np.inf:
+    strains = [place for place, name in enumerate(names) if name.startswith(_STRAIN)]
+    if len(varying) > len(rows) and strains and largest_strain < np.inf:
         half_width, cylinder = unit_contact(poisson_ratio_bulk)
         most = 3 * (np.log(largest_strain) + cylinder + high[3] - half_width)
-        place = names.index(_INVARIANT_NAMES[_STRAIN])
-        end[place] = min(end[place], max(most, start[place] + 1e-3))
+        end[strains[0]] = min(end[strains[0]], max(most, start[strains[0]] + 1e-3))
     half = (end - start) / 2
-    excluded = _complement(influence) @ _INVARIANTS
+    excluded = _complement(influence) @ invariants
+    if homogeneous:
+        excluded = np.vstack([excluded, _INVARIANTS[0]])  # E1/E0 is 1
     wanted = dict(counts or {})
     axes = FilmAxes(
         names=names,
@@ -279,6 +303,7 @@ def film_axes(
             wanted.get(name, _FIRST_NODES + int(np.ceil(2 * width * density[place])))
             for name, width, place in zip(names, half.tolist(), order, strict=True)
         ),
+        homogeneous=homogeneous,
     )
     return axes if stress_scale is None else _with_end(axes, poisson_ratio_bulk, stress_scale)
 
@@ -315,6 +340,7 @@ def _with_end(axes: FilmAxes, poisson_ratio_bulk: float, stress_scale: float) ->
 
 def range_logarithms(ranges: Mapping[str, tuple[float, float]]) -> tuple[FloatArray, FloatArray]:
     """ln of the ends of the ranges, SI, shape ``(6,)`` each; `InputError` if a range is missing or wrong."""
+    ranges = film_parameters(ranges, (1.0, 1.0))
     unknown = sorted(set(ranges) ^ set(FILM_PARAMETERS))
     if unknown:
         raise InputError(
@@ -329,9 +355,21 @@ def range_logarithms(ranges: Mapping[str, tuple[float, float]]) -> tuple[FloatAr
     return np.log(ends[:, 0]), np.log(ends[:, 1])
 
 
+Given = TypeVar("Given")
+
+
+def film_parameters(given: Mapping[str, Given], no_thickness: Given) -> dict[str, Given]:
+    """`FILM_PARAMETERS` of what may be `HOMOGENEOUS_PARAMETERS`, SI; a thickness that does not matter is ``no_thickness``."""
+    named = dict(given)
+    if "young_modulus" in named and not {"young_modulus_layer", "young_modulus_bulk"} & set(named):
+        named["young_modulus_layer"] = named["young_modulus_bulk"] = named.pop("young_modulus")
+        named.setdefault("layer_thickness", no_thickness)
+    return named
+
+
 def _solve_for(influence: FloatArray, count: int) -> tuple[list[int], FloatArray]:
     """Rows that determine the varying parameters, and the matrix that does so."""
-    for rows in combinations(range(len(_INVARIANTS)), count):
+    for rows in combinations(range(len(influence)), count):
         block = influence[list(rows)]
         if abs(np.linalg.det(block)) > 0.5:
             return list(rows), np.round(np.linalg.inv(block)) + 0.0
@@ -341,7 +379,7 @@ def _solve_for(influence: FloatArray, count: int) -> tuple[list[int], FloatArray
 def _complement(influence: FloatArray) -> FloatArray:
     """Combinations of the invariants that the varying parameters leave alone, shape ``(R, 4)``."""
     left, sizes, _ = (
-        np.linalg.svd(influence) if influence.size else (np.eye(len(_INVARIANTS)), np.zeros(0), None)
+        np.linalg.svd(influence) if influence.size else (np.eye(len(influence)), np.zeros(0), None)
     )
     rest = left[:, int(np.count_nonzero(sizes > 1e-9)) :].T
     return np.asarray(np.where(np.abs(rest) < 1e-12, 0.0, rest))

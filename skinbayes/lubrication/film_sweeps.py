@@ -10,13 +10,15 @@ from scipy.interpolate import PchipInterpolator
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.area import relative_contact_area
-from skinbayes.contact.layered import LayeredSkin, reduced_modulus
+from skinbayes.contact.homogeneous import HomogeneousSolid
+from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
+from skinbayes.contact.solid import ElasticSolid, reduced_modulus
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw, asperity_table, law_of_table
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
-from skinbayes.lubrication.film_axes import range_logarithms
+from skinbayes.lubrication.film_axes import film_parameters, range_logarithms
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE = range(6)
@@ -44,12 +46,14 @@ class Surface:
     spectrum : power spectrum of one surface, C in m^4; its rms height is a scale only
     poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless
     area_correction : γ, dimensionless
+    homogeneous : the solid has no layer; then E is E1, and ν is ν1
     """
 
     spectrum: PowerSpectrum
     poisson_ratio_layer: float
     poisson_ratio_bulk: float
     area_correction: float
+    homogeneous: bool = False
 
     @property
     def rms_height(self) -> float:
@@ -59,30 +63,28 @@ class Surface:
     def stress_scale(self, ranges: Mapping[str, tuple[float, float]]) -> float:
         """√V/(E0 h_rms), 1/m, for the softest layer on the stiffest tissue of some ranges of the parameters, SI."""
         range_logarithms(ranges)
-        layer, bulk, thickness = (
-            max(ranges["young_modulus_layer"][0], ranges["young_modulus_bulk"][1]),
-            ranges["young_modulus_bulk"][1],
-            ranges["layer_thickness"][0],
-        )
-        skin = LayeredSkin(
+        named = film_parameters(ranges, (1.0, 1.0))
+        bulk = named["young_modulus_bulk"][1]
+        layer = max(named["young_modulus_layer"][0], bulk)
+        skin = self.solid(layer, bulk, named["layer_thickness"][0])
+        return float(np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self.rms_height))
+
+    def solid(self, layer: float, bulk: float, thickness: float) -> ElasticSolid:
+        """The solid of given moduli, Pa, and thickness of the layer, m."""
+        if self.homogeneous:
+            return HomogeneousSolid(young_modulus=bulk, poisson_ratio=self.poisson_ratio_bulk)
+        return LayeredSkin(
             young_modulus_layer=layer,
             young_modulus_bulk=bulk,
             poisson_ratio_layer=self.poisson_ratio_layer,
             poisson_ratio_bulk=self.poisson_ratio_bulk,
             layer_thickness=thickness,
         )
-        return float(np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self.rms_height))
 
     def material(self, log_parameters: FloatArray) -> Material:
         """Asperity law and twice the stress variance at parameters given by their ln, SI, shape ``(6,)``."""
         layer, bulk, height, _, _, thickness = np.exp(log_parameters).tolist()
-        skin = LayeredSkin(
-            young_modulus_layer=layer,
-            young_modulus_bulk=bulk,
-            poisson_ratio_layer=self.poisson_ratio_layer,
-            poisson_ratio_bulk=self.poisson_ratio_bulk,
-            layer_thickness=thickness,
-        )
+        skin = self.solid(layer, bulk, thickness)
         law = law_of_table(*asperity_table(self.spectrum, skin, area_correction=self.area_correction))
         twice_variance = float(twice_stress_variance(self.spectrum, skin))
         return Material(law, twice_variance, layer * self.rms_height, layer / bulk, thickness, height)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation.stored import from_arrays, to_arrays
 from skinbayes.errors import InputError
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_parameters
 from skinbayes.lubrication.film_reference import SmoothFilms
 
 VERSION = 1
@@ -72,7 +72,11 @@ class FilmTable:
         return table
 
     def contains(self, **parameters: Any) -> NDArray[np.bool_]:
-        """Where the table holds parameters (SI, named as `FILM_PARAMETERS`, broadcast), or balls that are similar."""
+        """Where the table holds parameters (SI, broadcast), or balls that are similar.
+
+        They are named as `FILM_PARAMETERS`, or as `HOMOGENEOUS_PARAMETERS`.
+        """
         with np.errstate(all="ignore"):
-            logs = [np.log(np.asarray(parameters[name], dtype=np.float64)) for name in FILM_PARAMETERS]
+            named = film_parameters(parameters, 1.0)
+            logs = [np.log(np.asarray(named[name], dtype=np.float64)) for name in FILM_PARAMETERS]
         return self.axes.contains(logs)

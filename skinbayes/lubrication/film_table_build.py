@@ -54,13 +54,14 @@ def build_film_table(
     largest_strain: float = LARGEST_STRAIN,
     kept: Kept | None = None,
 ) -> FilmTable:
-    """Table of the films under a ball on rough layered skin for parameters within ranges (Sect. 6 of the paper).
+    """Table of the films under a ball on rough skin, or another solid, for parameters within ranges (Sect. 6 of the paper).
 
     Parameters
     ----------
-    ranges : smallest and largest value of each of the `FILM_PARAMETERS`, SI (Pa, m, N); equal for a fixed one
+    ranges : smallest and largest value of each of the `FILM_PARAMETERS`, or of the `HOMOGENEOUS_PARAMETERS`, SI (Pa, m, N);
+        equal for a fixed one
     spectrum : power spectrum of one surface, C in m^4; its shape counts, the rms height comes from the ranges
-    poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless
+    poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless; ν1 is that of a homogeneous solid
     area_correction : γ, dimensionless, 0 < γ ≤ 1
     counts : nodes of an axis, dimensionless, by its name; see `film_axes`
     speeds : number of speeds, dimensionless
@@ -103,7 +104,9 @@ def build_film_table(
     >>> print(table.axes.names, table.contains(**ball), table.contains(**{**ball, "rms_height": 1e-5}))
     () True False
     """
-    surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
+    surface = Surface(
+        spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction, "young_modulus" in ranges
+    )
     axes = film_axes(
         ranges,
         poisson_ratio_bulk,
@@ -188,7 +191,7 @@ def _check(
     axes = table.axes
     points: list[FloatArray] = []
     while len(points) < count:
-        drawn = rng.uniform(axes.low, axes.high)
+        drawn = axes.tied(rng.uniform(axes.low, axes.high))
         strain = film_scales(list(drawn), table.poisson_ratio_bulk).strain
         if strain <= np.log(largest_strain) and axes.contains(list(drawn)):
             points.append(drawn)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.lubrication.effective_viscosity import EffectiveViscosity
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_parameters
 from skinbayes.lubrication.film_contraction import (
     BOUNDARY,
     CENTRAL,
@@ -86,7 +86,8 @@ def tabulated_friction(
     ----------
     table : `FilmTable`
     speed_viscosity_product : ηv, N/m, ≥ 0, shape ``(N,)`` or ``(B, N)``, or a scalar; at 0 there is boundary friction
-    parameters : `FILM_PARAMETERS` by name, SI (Pa, m, N), each a scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
+    parameters : `FILM_PARAMETERS` or `HOMOGENEOUS_PARAMETERS` by name, SI (Pa, m, N), each a
+        scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the theory is evaluated at a ηv
     everything : also give films and load share
@@ -161,7 +162,8 @@ def tabulated_friction_of_liquids(
     table : `FilmTable`
     sliding_speed : v, m/s, ≥ 0, shape ``(N,)`` or ``(B, N)``; at 0 there is boundary friction
     liquids : the liquid of each of N rows, from `liquid_rows`
-    parameters : `FILM_PARAMETERS` by name, SI (Pa, m, N), each a scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
+    parameters : `FILM_PARAMETERS` or `HOMOGENEOUS_PARAMETERS` by name, SI (Pa, m, N), each a
+        scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the shear rate is that of the speed without it
     everything : also give films and load share
@@ -261,6 +263,7 @@ class _Arguments:
 
 
 def _arguments(parameters: Mapping[str, ArrayLike], *others: ArrayLike) -> _Arguments:
+    parameters = film_parameters(parameters, 1.0)
     wrong = sorted(set(parameters) ^ set(FILM_PARAMETERS))
     if wrong:
         raise InputError(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_axes
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS, film_axes
 from skinbayes.lubrication.film_sweeps import Surface
 from skinbayes.lubrication.film_table import VERSION
 from skinbayes.lubrication.film_table_build import CHECKED, SPEEDS, TABLE_NODES
@@ -70,7 +70,9 @@ def film_table_key(
     >>> film_table_key(ranges, named_surface("paper_reference"))["axes"]
     {'young_modulus_bulk': 7, 'rms_height': 5}
     """
-    surface = Surface(spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction)
+    surface = Surface(
+        spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction, "young_modulus" in ranges
+    )
     axes = film_axes(
         ranges,
         poisson_ratio_bulk,
@@ -78,11 +80,12 @@ def film_table_key(
         counts=counts,
         stress_scale=surface.stress_scale(ranges),
     )
+    known = [name for name in (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1]) if name in ranges]
     ends = float(spectrum.wavevector_min), float(spectrum.wavevector_max)
     power = spectrum.power(np.geomspace(*ends, _PLACES)) / surface.rms_height**2
     return {
         "version": VERSION,
-        "ranges": {name: [float(end) for end in ranges[name]] for name in FILM_PARAMETERS},
+        "ranges": {name: [float(end) for end in ranges[name]] for name in known},
         "axes": dict(zip(axes.names, axes.counts, strict=True)),
         "band": list(ends),
         "spectrum": hashlib.sha256(np.ascontiguousarray(power, dtype="<f8").tobytes()).hexdigest(),

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.gaps import gap_distribution
-from skinbayes.contact.layered import LayeredSkin
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.errors import InputError
 from skinbayes.lubrication.flow_factors import FrictionFactors
@@ -148,7 +148,7 @@ class TabulatedFlowFactors:
 
 def tabulated_flow_factors(
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     *,
     area_correction: float = AREA_CORRECTION,
     smallest_gap: float | None = None,
@@ -179,6 +179,7 @@ def tabulated_flow_factors(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> factors = tabulated_flow_factors(named_surface("paper_reference"),
     ...     LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6))

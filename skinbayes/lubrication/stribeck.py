@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.contact.layered import LayeredSkin, reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
+from skinbayes.contact.solid import ElasticSolid
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.lubrication.asperities import AsperityTable, asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
@@ -110,7 +110,7 @@ def stribeck_curve(
     normal_force: ArrayLike,
     sphere_radius: ArrayLike,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     frictional_shear_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
     velocity_shift_factor: ArrayLike = 1.0,
@@ -158,6 +158,7 @@ def stribeck_curve(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> surface = named_surface("paper_reference")
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
@@ -172,7 +173,7 @@ def stribeck_curve(
     given = np.asarray(speed_viscosity_product, dtype=np.float64)
     products = np.atleast_1d(given)
     twice_variance = twice_stress_variance(spectrum, skin)
-    modulus = reduced_modulus(skin.young_modulus_bulk, skin.poisson_ratio_bulk)
+    modulus = skin.contact_modulus
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     case = (normal_force, sphere_radius, frictional_shear_stress, area_correction, velocity_shift_factor,
             twice_variance, modulus)  # fmt: skip

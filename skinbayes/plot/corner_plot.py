@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 TITLE = "Posterior of parameters and pairs"
 
@@ -39,7 +39,7 @@ SMALLEST, LARGEST = 4.8, 15.0
 """Smallest and largest width and height, inch."""
 
 
-def plot_corner(fit: Fit, width: str | None = None) -> Figure:
+def plot_corner(fit: FitResult, width: str | None = None) -> Figure:
     """Draw the posterior of each free parameter and of each pair, positive ones on logarithmic axes.
 
     Parameters
@@ -153,9 +153,9 @@ class _Column:
     line: str
 
 
-def _column(fit: Fit, label: str) -> _Column:
+def _column(fit: FitResult, label: str) -> _Column:
     scale, draws, unit = scale_for(fit.unit(label), fit.draws(label)), fit.draws(label), fit.unit(label)
-    q05, median, q95 = (float(q) for q in np.quantile(draws, [0.05, 0.5, 0.95]))
+    q05, median, q95 = (float(q) for q in fit.quantiles(label))
     symbol = figure_symbol(fit, label)
     range_text = interval(q05, q95, unit, typical=median, joint=" – ")
 

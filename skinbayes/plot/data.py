@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.problem import Problem
 
 IntArray: TypeAlias = NDArray[np.intp]
@@ -51,7 +51,7 @@ MOST_BARS = 40
 """With more rows than this, each of other conditions, there are no bars row by row but a few curves."""
 
 
-def plot_data(fit: Fit, width: str | None = None) -> Figure:
+def plot_data(fit: FitResult, width: str | None = None) -> Figure:
     """Draw the data and what the fitted model says of them against the condition that varies: load, speed, humidity, time.
 
     Parameters
@@ -95,7 +95,7 @@ def plot_data(fit: Fit, width: str | None = None) -> Figure:
     return figure
 
 
-def varying(fit: Fit) -> tuple[str, FloatArray] | None:
+def varying(fit: FitResult) -> tuple[str, FloatArray] | None:
     """Name and values of the condition against which data are drawn, shape ``(N,)``, SI; None if there is none."""
     if fit.problem is None:
         return None
@@ -114,7 +114,7 @@ class _View:
     bands: list[Band]
 
 
-def _bands(fit: Fit, problem: Problem, name: str, along: FloatArray, observable: str) -> list[Band]:
+def _bands(fit: FitResult, problem: Problem, name: str, along: FloatArray, observable: str) -> list[Band]:
     """Curves of the model over the range of the data, one for each group of rows that share all other conditions.
 
     Empty if there is no such curve, or if rows have so many other conditions that bars say more.
@@ -135,7 +135,7 @@ def _bands(fit: Fit, problem: Problem, name: str, along: FloatArray, observable:
     return bands if few or len(along) > MOST_BARS else []
 
 
-def _panel(ax: Axes, fit: Fit, view: _View) -> None:
+def _panel(ax: Axes, fit: FitResult, view: _View) -> None:
     (x_unit, _), (y_unit, y_name) = axis_name(view.abscissa), axis_name(view.observable)
     x_scale = axis_scale(view.abscissa, scale_for(x_unit, view.along))
     shown = [view.observed, *(view.expected[[0, 4]] if len(view.bands) < 2 else [])]
@@ -202,7 +202,7 @@ def _bars(ax: Axes, view: _View, x_scale: Scale, y_scale: Scale) -> None:
 
 def _dots(
     ax: Axes,
-    fit: Fit,
+    fit: FitResult,
     view: _View,
     rows: IntArray,
     colour: str,

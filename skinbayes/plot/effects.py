@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 MOST_LEVELS = 30
 """Levels drawn in one panel; of more, the lowest and the highest."""
@@ -52,7 +52,9 @@ LONGEST, LONGEST_SMALL = 26, 18
 GONE = "The model or its data are gone, so that nothing can be predicted from this result."
 
 
-def plot_effects(fit: Fit, predictions: RowPredictions | None = None, width: str | None = None) -> Figure:
+def plot_effects(
+    fit: FitResult, predictions: RowPredictions | None = None, width: str | None = None
+) -> Figure:
     """Draw the effect of each level of each grouping column, and the residuals of its rows about the model without it.
 
     Parameters
@@ -102,7 +104,7 @@ def plot_effects(fit: Fit, predictions: RowPredictions | None = None, width: str
     return figure
 
 
-def _levels(ax: Axes, fit: Fit, column: str, predictions: RowPredictions, letters: int) -> None:
+def _levels(ax: Axes, fit: FitResult, column: str, predictions: RowPredictions, letters: int) -> None:
     observable = observables(fit)[0]
     of_row = levels_of_rows(fit, column)
     others = [name for name in group_columns(fit) if name != column]
@@ -140,7 +142,9 @@ def _levels(ax: Axes, fit: Fit, column: str, predictions: RowPredictions, letter
     ax.set_axisbelow(True)
 
 
-def plot_residuals(fit: Fit, predictions: RowPredictions | None = None, width: str | None = None) -> Figure:
+def plot_residuals(
+    fit: FitResult, predictions: RowPredictions | None = None, width: str | None = None
+) -> Figure:
     """Draw what is left between data and model, effects of groups taken off, against the abscissa and the conditions.
 
     Parameters

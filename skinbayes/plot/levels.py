@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.problem import Problem
 
 COLUMNS = 3
@@ -59,7 +59,10 @@ OTHERS, TYPICAL = "#BDBDBD", "#5A5A5A"
 
 
 def plot_levels(
-    fit: Fit, column: str | None = None, predictions: RowPredictions | None = None, width: str | None = None
+    fit: FitResult,
+    column: str | None = None,
+    predictions: RowPredictions | None = None,
+    width: str | None = None,
 ) -> Figure:
     """Draw the data of each level of a grouping column over what the model says of them.
 
@@ -156,7 +159,11 @@ class _View:
 
 
 def _view(
-    fit: Fit, problem: Problem, column: str, abscissa: tuple[str, FloatArray], predictions: RowPredictions
+    fit: FitResult,
+    problem: Problem,
+    column: str,
+    abscissa: tuple[str, FloatArray],
+    predictions: RowPredictions,
 ) -> _View:
     observable = observables(fit)[0]
     y = observed_values(fit)[: len(abscissa[1])]
@@ -194,7 +201,7 @@ def _ordered(of_row: NDArray[np.str_], x: FloatArray) -> list[str]:
     return sorted(kept, key=lambda name: medians[name]) if parted else sorted(kept)
 
 
-def _typical(fit: Fit, problem: Problem) -> tuple[FloatArray, FloatArray] | None:
+def _typical(fit: FitResult, problem: Problem) -> tuple[FloatArray, FloatArray] | None:
     """The curve of the posterior median at the row whose conditions are nearest to the middle of all."""
     middle = np.median(fit.theta(), axis=0)
     followed = followed_profile(problem, middle)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 MOST_LABELLED = 40
 """Up to so many rows each has its name; beyond, rows are ordered by prediction and have none."""
@@ -38,7 +38,7 @@ LONGEST, LONGEST_SMALL = 24, 16
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
-def plot_predictive(fit: Fit, width: str | None = None) -> Figure:
+def plot_predictive(fit: FitResult, width: str | None = None) -> Figure:
     """Draw observed values on their posterior predictive distributions.
 
     Parameters
@@ -55,7 +55,7 @@ def plot_predictive(fit: Fit, width: str | None = None) -> Figure:
     return _plot(fit, "posterior_predictive", "Data against the fitted model", POSTERIOR, width)
 
 
-def plot_prior_predictive(fit: Fit, width: str | None = None) -> Figure:
+def plot_prior_predictive(fit: FitResult, width: str | None = None) -> Figure:
     """Draw observed values on their prior predictive distributions: what the model expected before it saw the data.
 
     Parameters
@@ -71,7 +71,7 @@ def plot_prior_predictive(fit: Fit, width: str | None = None) -> Figure:
     return _plot(fit, "prior_predictive", "Data against what the priors allow", PRIOR, width)
 
 
-def predictive_quantiles(fit: Fit, group: str = "posterior_predictive") -> FloatArray:
+def predictive_quantiles(fit: FitResult, group: str = "posterior_predictive") -> FloatArray:
     """5, 25, 50, 75 and 95 % quantiles of the finite predictive draws of each row, shape ``(5, N)``, SI."""
     draws = predictive_draws(fit, group)
     return np.stack(
@@ -85,7 +85,7 @@ def predictive_quantiles(fit: Fit, group: str = "posterior_predictive") -> Float
     )
 
 
-def predictive_draws(fit: Fit, group: str = "posterior_predictive") -> FloatArray:
+def predictive_draws(fit: FitResult, group: str = "posterior_predictive") -> FloatArray:
     """All predictive draws, one observable after the other, shape ``(draws, M)``, SI."""
     parts = [fit.groups[group][name].values for name in observables(fit)]
     return np.concatenate(
@@ -93,23 +93,23 @@ def predictive_draws(fit: Fit, group: str = "posterior_predictive") -> FloatArra
     )
 
 
-def observables(fit: Fit) -> tuple[str, ...]:
+def observables(fit: FitResult) -> tuple[str, ...]:
     """Names of what was observed."""
     return tuple(fit.provenance["observables"])
 
 
-def observed_values(fit: Fit) -> FloatArray:
+def observed_values(fit: FitResult) -> FloatArray:
     """The data, one observable after the other, shape ``(M,)``, SI."""
     observed = fit.groups["observed_data"]
     return np.concatenate([np.asarray(observed[name].values, dtype=float) for name in observables(fit)])
 
 
-def row_names(fit: Fit) -> list[str]:
+def row_names(fit: FitResult) -> list[str]:
     """Names of the rows of data."""
     return [str(row) for row in fit.groups["observed_data"]["row"].values]
 
 
-def datum_names(fit: Fit) -> list[str]:
+def datum_names(fit: FitResult) -> list[str]:
     """Names of the data: their row, their observable, or both."""
     rows, names = row_names(fit), [spoken_name(name) for name in observables(fit)]
     if len(names) == 1:
@@ -117,7 +117,7 @@ def datum_names(fit: Fit) -> list[str]:
     return names if len(rows) == 1 else [f"{name}, {row}" for name in names for row in rows]
 
 
-def _plot(fit: Fit, group: str, title: str, colour: str, width: str | None) -> Figure:
+def _plot(fit: FitResult, group: str, title: str, colour: str, width: str | None) -> Figure:
     names, rows = observables(fit), row_names(fit)
     if rows == ["1"]:  # the number of a row that has no other is no name
         rows = [""]

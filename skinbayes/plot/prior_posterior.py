@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 BINS = 128
 
@@ -28,7 +28,7 @@ VERDICTS = {
 }
 
 
-def plot_prior_posterior(fit: Fit, width: str | None = None) -> Figure:
+def plot_prior_posterior(fit: FitResult, width: str | None = None) -> Figure:
     """Draw the densities of prior and posterior of each free parameter, per unit of its axis.
 
     Parameters
@@ -60,7 +60,7 @@ def plot_prior_posterior(fit: Fit, width: str | None = None) -> Figure:
     return figure
 
 
-def _panel(ax: Axes, fit: Fit, label: str, verdict: str) -> None:
+def _panel(ax: Axes, fit: FitResult, label: str, verdict: str) -> None:
     before, after = fit.draws(label, "prior"), fit.draws(label)
     scale = scale_for(fit.unit(label), before, after)
     for draws, colour, name, width in ((before, PRIOR, "prior", 1.2), (after, POSTERIOR, "posterior", 1.8)):

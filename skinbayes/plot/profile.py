@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.forward import Profile
     from skinbayes.problem import Problem
 
@@ -45,7 +45,7 @@ TITLES = {
 """Titles of figures of several curves by their abscissa."""
 
 
-def plot_profile(fit: Fit, abscissa: str | None = None, width: str | None = None) -> Figure:
+def plot_profile(fit: FitResult, abscissa: str | None = None, width: str | None = None) -> Figure:
     """Draw the curves that the forward model offers, with posterior median and bands, and the data that lie on them.
 
     Parameters
@@ -122,7 +122,7 @@ def profile_abscissas(problem: Problem) -> list[str]:
 
 
 def _panel(
-    ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[Band]
+    ax: Axes, fit: FitResult, problem: Problem, profile: Profile, bands: list[Band]
 ) -> tuple[Scale, float, float]:
     """Draw one curve and its data; return the scale of the abscissa and the ends of what was drawn."""
     x_unit, _ = axis_name(profile.abscissa)
@@ -169,7 +169,13 @@ def _ends(scale: Scale, bands: list[Band], measured: FloatArray) -> tuple[float,
 
 
 def _data(
-    ax: Axes, fit: Fit, problem: Problem, profile: Profile, bands: list[Band], x_scale: Scale, y_scale: Scale
+    ax: Axes,
+    fit: FitResult,
+    problem: Problem,
+    profile: Profile,
+    bands: list[Band],
+    x_scale: Scale,
+    y_scale: Scale,
 ) -> FloatArray:
     """Draw the data that lie on the curve, each in the colour of its curve if that is drawn; return their abscissa, SI."""
     along = abscissa_of_rows(problem, profile, np.median(fit.theta(), axis=0))

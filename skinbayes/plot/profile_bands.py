@@ -13,7 +13,7 @@ from skinbayes.plot.predictive import LEVELS, row_names
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.forward import Profile
     from skinbayes.problem import Problem
     from skinbayes.problem.inputs import Conditions
@@ -48,7 +48,7 @@ class Band:
     quantiles: FloatArray
 
 
-def profile_bands(fit: Fit, problem: Problem, profile: Profile) -> list[Band]:
+def profile_bands(fit: FitResult, problem: Problem, profile: Profile) -> list[Band]:
     """The curves of one profile, at most four, each for a group of rows that share it."""
     theta = fit.theta()
     middle = np.median(theta, axis=0, keepdims=True)

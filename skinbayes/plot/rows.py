@@ -12,7 +12,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.plot.predictive import row_names
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
     from skinbayes.forward import Profile
     from skinbayes.problem import Problem
 
@@ -52,7 +52,7 @@ class RowPredictions:
         return np.asarray(np.nanmedian(found, axis=0))
 
 
-def row_predictions(fit: Fit, problem: Problem) -> RowPredictions:
+def row_predictions(fit: FitResult, problem: Problem) -> RowPredictions:
     """Predict the rows of the data for some of the posterior draws, with the effects of groups drawn with them."""
     theta = fit.theta()
     step = max(1, len(theta) // DRAWS)
@@ -65,21 +65,21 @@ def row_predictions(fit: Fit, problem: Problem) -> RowPredictions:
     )
 
 
-def effect_draws(fit: Fit, column: str) -> tuple[list[str], FloatArray]:
+def effect_draws(fit: FitResult, column: str) -> tuple[list[str], FloatArray]:
     """Levels of a grouping column and the posterior draws of their effects, shape ``(draws, levels)``."""
     variable = fit.groups["posterior"][f"{column}_effect"]
     levels = [str(level) for level in variable[f"{column}_level"].values]
     return levels, np.asarray(variable.values, dtype=float).reshape(-1, len(levels))
 
 
-def effect_at_rows(fit: Fit, column: str, step: int = 1) -> FloatArray:
+def effect_at_rows(fit: FitResult, column: str, step: int = 1) -> FloatArray:
     """One in ``step`` posterior draws of the effect of a grouping column at each row, shape ``(draws, N)``."""
     levels, draws = effect_draws(fit, column)
     place = {level: i for i, level in enumerate(levels)}
     return draws[::step, [place[level] for level in levels_of_rows(fit, column)]]
 
 
-def group_columns(fit: Fit) -> list[str]:
+def group_columns(fit: FitResult) -> list[str]:
     """Grouping columns whose levels have an effect in this fit."""
     return [
         str(name).removesuffix("_effect")
@@ -88,12 +88,12 @@ def group_columns(fit: Fit) -> list[str]:
     ]
 
 
-def levels_of_rows(fit: Fit, column: str) -> NDArray[np.str_]:
+def levels_of_rows(fit: FitResult, column: str) -> NDArray[np.str_]:
     """Level of each row in a column of labels."""
     return np.asarray(fit.groups["constant_data"][column].values).astype(np.str_)
 
 
-def label_columns(fit: Fit) -> list[str]:
+def label_columns(fit: FitResult) -> list[str]:
     """Columns of labels of the rows of a fit."""
     if "constant_data" not in fit.groups:
         return []
@@ -104,7 +104,7 @@ def label_columns(fit: Fit) -> list[str]:
     ]
 
 
-def telling_columns(fit: Fit) -> list[str]:
+def telling_columns(fit: FitResult) -> list[str]:
     """Columns of labels by which data can be looked at: those with effects, and others of several levels of several rows."""
     effects, rows = group_columns(fit), len(row_names(fit))
     others = [c for c in label_columns(fit) if c not in effects and c != "row_label"]

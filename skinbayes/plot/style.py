@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, VERMILLION, PURPLE = (
     "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7",
@@ -162,7 +162,7 @@ def letters_of_key(width: float) -> int:
     return int(12 * width)
 
 
-def set_title(figure: Figure, fit: Fit, text: str) -> None:
+def set_title(figure: Figure, fit: FitResult, text: str) -> None:
     """Write the title as large as fits; a fit that has not converged is named so, in another colour and weight."""
     width, height = figure.get_size_inches()
     title = text if fit.converged else f"{NOT_CONVERGED} – {text}"
@@ -187,7 +187,7 @@ def key_below(figure: Figure, ax: Axes, columns: int) -> None:
     )
 
 
-def sentence_figure(fit: Fit, title: str, sentence: str, width: str | None = None) -> Figure:
+def sentence_figure(fit: FitResult, title: str, sentence: str, width: str | None = None) -> Figure:
     """A figure that says in words why there is nothing to draw."""
     size = inches(width)
     with look(size):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from skinbayes.vocabulary import LABELS, QUANTITIES
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 SUBSCRIPT = re.compile(r"(?<![^\W_])(RH(?=_)|Δ?[^\W\d_][\u0300-\u036f]?)(?:_(\w+)|(\d))(?!\w)")
 """A letter (with an accent, or a difference of it) and its subscript: ``σ_f``, ``E0``, ``A_pl``, ``Δt_peak``; and ``RH_t``."""
@@ -69,7 +69,7 @@ def spoken_name(label: str) -> str:
     return f"{name} ({level.removesuffix(']')})" if level else name
 
 
-def figure_symbol(fit: Fit, label: str) -> str:
+def figure_symbol(fit: FitResult, label: str) -> str:
     """Symbol of a parameter for a figure."""
     return figure_text(fit.symbol(label))
 

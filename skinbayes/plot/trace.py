@@ -13,13 +13,13 @@ from skinbayes.plot.symbols import figure_symbol
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 POINTS = 250
 """Draws shown of each ensemble."""
 
 
-def plot_trace(fit: Fit, width: str | None = None) -> Figure:
+def plot_trace(fit: FitResult, width: str | None = None) -> Figure:
     """Draw the draws of each free parameter against time, one ensemble beside the other.
 
     Parameters
@@ -62,7 +62,7 @@ def plot_trace(fit: Fit, width: str | None = None) -> Figure:
                     color=SERIES[chain % len(SERIES)],
                     linewidth=0.6,
                 )
-            for level in np.quantile(values, [0.05, 0.5, 0.95]):
+            for level in scale.shown(fit.quantiles(label)):
                 ax.axhline(level, color="#1A1A1A", linewidth=0.8, linestyle=(0, (4, 3)))
             for boundary in range(1, chains):
                 ax.axvline(boundary * shown - 0.5, color="#B0B0B0", linewidth=0.8)
@@ -74,6 +74,10 @@ def plot_trace(fit: Fit, width: str | None = None) -> Figure:
         axes[-1].set_xlim(-0.5, chains * shown - 0.5)
         axes[-1].set_xticks([(i + 0.5) * shown for i in range(chains)], [f"{i + 1}" for i in range(chains)])
         axes[-1].tick_params(axis="x", length=0)
-        axes[-1].set_xlabel("ensemble; within each, time runs to the right")
-        set_title(figure, fit, "Draws against time")
+        weighted = "weighted_posterior" in fit.groups
+        axes[-1].set_xlabel(
+            "draws with weights, resampled in random order" if weighted
+            else f"{'ensemble' if 'ensembles' in fit.provenance['sampling'] else 'chain'}; within each, time runs to the right"
+        )  # fmt: skip
+        set_title(figure, fit, "Draws in random order" if weighted else "Draws against time")
     return figure

@@ -8,10 +8,10 @@ import numpy as np
 
 if TYPE_CHECKING:
     from skinbayes.diagnose import PriorUpdate
-    from skinbayes.fit import Fit
+    from skinbayes.fit.result import FitResult
 
 
-def fit_updates(fit: Fit) -> dict[str, PriorUpdate]:
+def fit_updates(fit: FitResult) -> dict[str, PriorUpdate]:
     """Prior against posterior of each free parameter, by label.
 
     Spreads are compared in the coordinates of each parameter alone: logarithms of positive ones. Without the problem the

@@ -66,7 +66,7 @@ def distinct_rows(
     columns: list[NDArray[np.generic]] = [*conditions.values.values(), *conditions.covariates.values()]
     columns += list((further or {}).values())
     for entry in plan:
-        columns += [entry.index, entry.fixed]
+        columns += [entry.index, entry.fixed, entry.times]
     if tables.flow_curves is not None:
         columns.append(np.array([id(curve) for curve in tables.flow_curves]))
     place = kinds([column for column in columns if len(column) > 1], conditions.n_rows)

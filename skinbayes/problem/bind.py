@@ -30,6 +30,7 @@ from skinbayes.problem.rows import (
 )
 from skinbayes.problem.settings import apply_settings
 from skinbayes.problem.surface import Surface, choose_surface
+from skinbayes.problem.tied import resolve_ties
 from skinbayes.roughness import TabulatedSpectrum
 from skinbayes.vocabulary import QUANTITIES
 
@@ -132,13 +133,11 @@ def _completed(
     columns = () if rows.dataset is None else rows.dataset.units
     check_required(spec, forward, given | ({REPLACED} if has_curves else set()), surface.spectrum, columns)
     defaults = [
-        ParameterSpec(
-            key, QUANTITIES[key].unit, None, None, float(value), None, source=f"default of {forward.name}"
-        )
-        for key, value in forward.optional.items()
-        if key not in given
+        ParameterSpec(key, QUANTITIES[key].unit, None, None, value, None, source=f"default of {forward.name}")
+        for key, value in forward.defaults(given).items()
     ]
-    return (*parameters, *defaults, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
+    inputs = resolve_ties([*parameters, *defaults], str(spec.path), rows.conditions.values)
+    return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
 
 
 def _problem(
@@ -155,7 +154,8 @@ def _problem(
         spec=spec,
         forward=forward,
         free=tuple(p for p in parameters if p.prior is not None),
-        fixed=tuple(p for p in parameters if p.prior is None),
+        fixed=tuple(p for p in parameters if p.value is not None),
+        tied=tuple(p for p in parameters if p.same_as is not None),
         conditions=rows.conditions,
         dataset=rows.dataset,
         observations=rows.observations,

@@ -48,6 +48,7 @@ class BoundModel:
     tables : tabulated roughness spectrum and flow curves of the rows, where there are any
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
     settings : values set over the model file, as given
+    tied : parameters that are multiples of free or fixed ones
     """
 
     spec: ModelSpec
@@ -62,6 +63,7 @@ class BoundModel:
     tables: Tables
     flow_curves: Mapping[str, FlowCurve]
     settings: Mapping[str, str] = field(default_factory=dict)
+    tied: tuple[ParameterSpec, ...] = ()
 
     @property
     def name(self) -> str:
@@ -147,7 +149,7 @@ class BoundModel:
         if conditions is not None:
             curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, rows, self.spec.path)
             tables = replace(tables, flow_curves=curves)
-            alike = distinct_rows(plan_inputs(self.fixed, self.free, rows), rows, tables)
+            alike = distinct_rows(plan_inputs(self.fixed, self.free, rows, self.tied), rows, tables)
 
         def piece(part: FloatArray) -> dict[str, FloatArray]:
             found = self.evaluate(self.inputs(part, conditions), tables, alike)
@@ -233,9 +235,9 @@ class BoundModel:
     def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
         """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""
         rows = conditions or self.conditions
-        plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows)
-        values = {entry.name: entry.values(theta) for entry in plan if entry.name not in rows.values}
-        values |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
+        plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows, self.tied)
+        same, varying = self._parted if conditions is None else _parted(plan, rows)
+        values = same | {entry.name: entry.values(theta) for entry in varying}
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
 
     @cached_property
@@ -271,7 +273,11 @@ class BoundModel:
     @cached_property
     def plan(self) -> tuple[InputPlan, ...]:
         """Where each input comes from."""
-        return plan_inputs(self.fixed, self.free, self.conditions)
+        return plan_inputs(self.fixed, self.free, self.conditions, self.tied)
+
+    @cached_property
+    def _parted(self) -> tuple[dict[str, FloatArray], list[InputPlan]]:
+        return _parted(self.plan, self.conditions)
 
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
         return as_batch(theta, self.names)
@@ -290,3 +296,12 @@ class BoundModel:
                     continue
                 quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
         return {name: without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
+
+
+def _parted(plan: tuple[InputPlan, ...], rows: Conditions) -> tuple[dict[str, FloatArray], list[InputPlan]]:
+    """Inputs that are the same for all parameter vectors, and where the others come from."""
+    wanted = [entry for entry in plan if entry.name not in rows.values]
+    nothing = np.empty((1, 0))
+    same = {entry.name: entry.values(nothing) for entry in wanted if not entry.varies}
+    same |= {name: column[np.newaxis, :] for name, column in rows.values.items()}
+    return same, [entry for entry in wanted if entry.varies]

@@ -55,7 +55,8 @@ def build_problem(
     data : what was measured: a pandas data frame or a mapping of arrays with headers as a CSV has them, a
         :class:`~skinbayes.Dataset`, the name of a shipped data set, or the path of a CSV; None for a model that only predicts
     parameters : name to a fixed value, or to a prior such as ``{"lognormal": ["15 MPa", 0.5], "source": "…"}``, or to one of
-        these for each level: ``{"by": "state", "dry": …, "wet": …}``
+        these for each level: ``{"by": "state", "dry": …, "wet": …}``; or to a multiple of another parameter:
+        ``{"same_as": "young_modulus_layer", "times": 0.5}``
     noise : its ``family`` and parameters; with several observables one such mapping for each
     observable : column (or columns) that the model explains; the first of the forward model if not given
     rows : label column to the labels of the rows that are used

@@ -106,8 +106,9 @@ def _solved_anew(problem: StatisticalModel) -> bool:
 
 def _setup(problem: StatisticalModel) -> tuple[str, ...]:
     free, fixed = len(problem.free), len(problem.fixed)
+    tied = f", and {len(problem.tied)} tied to others" if problem.tied else ""
     said = [
-        f"'{problem.name}' has {free} free and {fixed} fixed inputs; every value has a unit and lies in its physical range."
+        f"'{problem.name}' has {free} free and {fixed} fixed inputs{tied}; every value has a unit and lies in its physical range."
     ]
     if problem.dataset is not None:
         rows = problem.conditions.n_rows
@@ -142,6 +143,7 @@ def _priors(problem: StatisticalModel) -> tuple[str, ...]:
         if not parameter.source:
             line += " No source is given."
         said.append(line)
+    said += [f"{p.label} {p.prior_text}, and is not free." for p in problem.tied]
     return tuple(said)
 
 

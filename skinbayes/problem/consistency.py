@@ -59,12 +59,18 @@ def check_required(
                 )
         elif not any(set(names) <= given for names in entry):
             options = "; or ".join(" and ".join(names) for names in entry)
+            best = max(entry, key=lambda names: len(given & set(names)) / len(names))
+            absent = " and ".join(name for name in best if name not in given)
+            lacking = f" Not given: {absent}." if given & set(best) else ""
             raise InputError(
-                f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data."
+                f"{spec.path}: '{forward.name}' needs {options}: in [parameters] or as columns of the data.{lacking}"
                 f"{near_miss(columns, [name for names in entry for name in names if name not in given])}".rstrip(
                     "."
                 )
             )
+    for name, other in forward.goes_with.items():
+        if name in given and other not in given:
+            raise InputError(f"{spec.path}: '{name}' has no effect without {other}; drop it, or give {other}")
     inert = [name for name in ROUGHNESS_INPUTS if name in given and name != "rms_height"]
     if table is not None and inert:
         raise InputError(

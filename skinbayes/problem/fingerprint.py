@@ -48,6 +48,7 @@ def digest_model(
     from skinbayes.version import __version__
 
     table = tables.spectrum
+    tied = sorted((str(p.by), p.label, str(p.same_as), repr(p.times)) for p in parameters if p.same_as)
     return _digest(
         {
             "version": __version__,
@@ -56,7 +57,8 @@ def digest_model(
             "covariates": [[c.name, c.column, c.acts_on, repr(c.reference)] for c in spec.covariates],
             # the order of free parameters is that of the coordinates of a run
             "free": [(p.by, p.label, repr(p.prior)) for p in parameters if p.prior is not None],
-            "fixed": sorted((str(p.by), p.label, repr(p.value)) for p in parameters if p.prior is None),
+            "fixed": sorted((str(p.by), p.label, repr(p.value)) for p in parameters if p.value is not None),
+            **({"tied": tied} if tied else {}),
             "conditions": [_arrays(conditions.values), _arrays(conditions.covariates)],
             "labels": _arrays(conditions.labels),
             "input_spread": _arrays(input_spread),

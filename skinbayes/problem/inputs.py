@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -65,11 +65,13 @@ class InputPlan:
     name : input of the forward model
     index : position in the parameter vector for each row, −1 where the value is fixed; shape ``(1,)`` or ``(n_rows,)``
     fixed : fixed value for each row, NaN where free; same shape
+    times : what the free value is multiplied with for each row, 1 unless tied; same shape
     """
 
     name: str
     index: NDArray[np.intp]
     fixed: FloatArray
+    times: FloatArray
 
     def values(self, theta: FloatArray) -> FloatArray:
         """Values for a batch of parameter vectors ``(B, D)``: shape ``(B, 1)`` or ``(B, n_rows)``; ``(1, ·)`` if fixed."""
@@ -77,7 +79,18 @@ class InputPlan:
         if not is_free.any():
             return constant
         free = np.ascontiguousarray(theta[:, position])
+        if self._is_tied:
+            free = free * self.times
         return free if is_free.all() else np.where(is_free, free, constant)
+
+    @property
+    def varies(self) -> bool:
+        """Whether the parameter vector enters."""
+        return bool((self.index >= 0).any())
+
+    @cached_property
+    def _is_tied(self) -> bool:
+        return bool((self.times != 1).any())
 
     @cached_property
     def _prepared(self) -> tuple[NDArray[np.bool_], NDArray[np.intp], FloatArray]:
@@ -94,9 +107,12 @@ def label_meant(column: str, labels: Collection[str]) -> str:
 
 
 def plan_inputs(
-    fixed: Sequence[ParameterSpec], free: Sequence[ParameterSpec], conditions: Conditions
+    fixed: Sequence[ParameterSpec],
+    free: Sequence[ParameterSpec],
+    conditions: Conditions,
+    tied: Sequence[ParameterSpec] = (),
 ) -> tuple[InputPlan, ...]:
-    """Work out where each input comes from for the given rows.
+    """Work out where each input comes from for the given rows; those that are ``tied`` follow one of the others.
 
     Raises
     ------
@@ -105,6 +121,10 @@ def plan_inputs(
     """
     by_name: dict[str, list[tuple[ParameterSpec, int]]] = {}
     positions = [(spec, -1) for spec in fixed] + [(spec, position) for position, spec in enumerate(free)]
+    places = {spec.label: (spec.value, position) for spec, position in positions} if tied else {}
+    for spec in tied:
+        value, position = places[str(spec.same_as)]
+        positions.append((replace(spec, value=None if value is None else value * spec.times), position))
     for spec, position in positions:
         by_name.setdefault(_input_name(spec), []).append((spec, position))
     return tuple(_plan_one(name, entries, conditions) for name, entries in by_name.items())
@@ -120,22 +140,23 @@ def _plan_one(name: str, entries: list[tuple[ParameterSpec, int]], conditions: C
     if column is None or not entries[0][0].by_column:
         (spec, position), *_ = entries
         value = np.nan if spec.value is None else spec.value
-        return InputPlan(name, np.array([position]), np.array([value]))
+        return InputPlan(name, np.array([position]), np.array([value]), np.array([spec.times]))
     if column not in conditions.labels:
         raise InputError(
             f"{name} differs by '{column}', but the rows have no column '{column}': add it ('skinbayes template' prints the "
             f"header that a model needs).{label_meant(column, conditions.labels)}".rstrip(".")
         )
     index = np.full(conditions.n_rows, -2)
-    fixed = np.full(conditions.n_rows, np.nan)
+    fixed, times = np.full(conditions.n_rows, np.nan), np.ones(conditions.n_rows)
     for spec, position in entries:
         here = conditions.labels[column] == spec.level
         index[here] = position
         fixed[here] = np.nan if spec.value is None else spec.value
+        times[here] = spec.times
     if (index == -2).any():
         missing = sorted({str(level) for level in conditions.labels[column][index == -2]})
         known = ", ".join(str(spec.level) for spec, _ in entries)
         raise InputError(
             f"{name} differs by '{column}' and has values for {known}, but rows have {', '.join(missing)}"
         )
-    return InputPlan(name, index, fixed)
+    return InputPlan(name, index, fixed, times)

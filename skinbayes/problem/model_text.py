@@ -58,8 +58,10 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
         }
     elif spec.surface_name is not None:
         content["surface"] = {"name": spec.surface_name}
-    named = {p.name for p in (*problem.free, *problem.fixed)}
-    own = [p for p in (*problem.free, *problem.fixed) if p.name in problem.forward.input_names()]
+    named = {p.name for p in (*problem.free, *problem.fixed, *problem.tied)}
+    own = [
+        p for p in (*problem.free, *problem.fixed, *problem.tied) if p.name in problem.forward.input_names()
+    ]
     content["parameters"] = _by_level(spec.path, (p for p in own if p.entry is not None))
     if spec.noise:
         content["noise"] = _noise(problem)
@@ -181,6 +183,12 @@ def _entry(path: Path, parameter: ParameterSpec) -> dict[str, Any]:
     """Value or prior as it was written, if it still is that; otherwise in SI."""
     quantity, unit, where = QUANTITIES[parameter.name], parameter.unit, f"{path}: {parameter.label}"
     source = {"source": parameter.source} if parameter.source else {}
+    if parameter.same_as is not None:
+        return {
+            "same_as": parameter.same_as,
+            **({} if parameter.times == 1 else {"times": parameter.times}),
+            **source,
+        }
 
     def says(entry: Mapping[str, Any]) -> bool:
         read = parse_parameter(quantity, entry, where, unit)

@@ -97,4 +97,5 @@ def _resolve_alternatives(
             dropped |= others
         else:
             dropped |= {name for names in entry if names not in chosen and len(names) == 1 for name in names}
+    dropped |= {name for name, other in forward.goes_with.items() if other in dropped and name not in given}
     return [p for p in parameters if p.name not in dropped], dropped

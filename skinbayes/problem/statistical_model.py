@@ -27,7 +27,7 @@ class StatisticalModel(BoundModel):
     def fingerprint(self) -> str:
         """Digest of everything the posterior depends on; a run is only continued where it is the same."""
         return digest_model(
-            self.spec, self.forward, (*self.free, *self.fixed), self.conditions, self.observations, self.input_spread,
+            self.spec, self.forward, (*self.free, *self.fixed, *self.tied), self.conditions, self.observations, self.input_spread,
             self.groups, self.tables, self.data_fingerprint,
         )  # fmt: skip
 
@@ -41,7 +41,7 @@ class StatisticalModel(BoundModel):
     def log_prior(self, theta: ArrayLike) -> FloatArray:
         """Log prior density per SI unit of each parameter; ``-inf`` outside the support. Shape ``(B,)`` or scalar."""
         batch, single = self._batch(theta)
-        return unbatch(self.prior_density()(batch), single)
+        return unbatch(self._prior(batch), single)
 
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
         """Log-likelihood of the data, shape ``(B,)``; ``pointwise=True`` gives ``(B, M)``, one for each datum.
@@ -74,7 +74,7 @@ class StatisticalModel(BoundModel):
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
         """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
         batch, single = self._batch(theta)
-        return unbatch(impossible(self.prior_density().times(self.data_likelihood())(batch)), single)
+        return unbatch(impossible(self._posterior(batch)), single)
 
     def prior_transform(self, u: ArrayLike) -> FloatArray:
         """Map the unit hypercube to parameters by the prior quantiles, as nested samplers need it; shape as ``u``."""
@@ -86,7 +86,7 @@ class StatisticalModel(BoundModel):
 
     def prior_density(self) -> LogDensity:
         """The prior as a density: it gains a Jacobian when coordinates change."""
-        return LogDensity.independent([parameter.prior for parameter in self.free if parameter.prior])
+        return self._prior
 
     def data_likelihood(self) -> LogLikelihood:
         """The likelihood: it stays as it is when coordinates change; NaN where the forward model has no answer."""
@@ -153,6 +153,14 @@ class StatisticalModel(BoundModel):
     def costly(self) -> bool:
         """Whether a likelihood takes so long that fewer walkers are better: a costly forward model, or very many rows."""
         return self.forward.costly or self.conditions.n_rows >= MANY_ROWS
+
+    @cached_property
+    def _prior(self) -> LogDensity:
+        return LogDensity.independent([parameter.prior for parameter in self.free if parameter.prior])
+
+    @cached_property
+    def _posterior(self) -> LogDensity:
+        return self._prior.times(self.data_likelihood())
 
     @cached_property
     def _likelihood(self) -> Likelihood:

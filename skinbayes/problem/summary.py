@@ -22,6 +22,8 @@ def summary(problem: BoundModel) -> str:
     said.append(f"forward model: {problem.forward.name}")
     said += _listed("free", (f"{p.label}: {p.prior_text}" for p in problem.free))
     said += _listed("fixed", (f"{p.label}: {p.prior_text}" for p in problem.fixed))
+    if problem.tied:
+        said += _listed("tied", (f"{p.label} {p.prior_text}" for p in problem.tied))
     return "\n".join(said)
 
 

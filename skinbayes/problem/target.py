@@ -86,6 +86,28 @@ class PosteriorTarget:
         with np.errstate(all="ignore"):
             return self._density(position)
 
+    def log_likelihood(self, position: FloatArray) -> FloatArray:
+        """Log-likelihood of each row of ``position``; −inf where the forward model has no answer."""
+        if not self.use_likelihood:
+            return np.zeros(len(position))
+        with np.errstate(all="ignore"):
+            return self.problem.log_likelihood(self.transform.inverse(position))
+
+    def prior_transform(self, unit: FloatArray) -> FloatArray:
+        """Positions at quantiles of the prior, rows of the unit cube ``(B, D)``."""
+        return self.transform.forward(self.problem.prior_transform(unit))
+
+    def integrated_out(self, position: FloatArray, rng: np.random.Generator) -> dict[str, FloatArray]:
+        """Effects of each group, averaged over its levels."""
+        groups = self.problem.groups
+        if groups is None:
+            return {}
+        effects = self.problem.draw_effects(self.transform.inverse(position), rng)
+        return {
+            f"the effect of {column}": effects[:, groups.effects_of(column)].mean(axis=1)
+            for column in groups.columns
+        }
+
     def starts(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Positions to start from: prior draws, thinned towards the posterior but as dispersed as the draws allow.
 
@@ -124,12 +146,10 @@ class PosteriorTarget:
         chosen = np.argsort(-(beta * weight + rng.gumbel(size=weight.shape)))[:count]
         if effective_number(weight) > FOUND:
             return position[chosen]
-
-        def likelihood(place: FloatArray) -> FloatArray:
-            return self.problem.log_likelihood(self.transform.inverse(place))
-
         only_prior = replace(self, use_likelihood=False).log_density
-        return anneal(position[chosen], weight[chosen], beta, DISPERSION, only_prior, likelihood, rng)
+        return anneal(
+            position[chosen], weight[chosen], beta, DISPERSION, only_prior, self.log_likelihood, rng
+        )
 
 
 def _with_walls(support: tuple[float, float]) -> Transform:

@@ -95,6 +95,7 @@ def drawings(fit: Fit) -> list[Drawing]:
             else [*_by_level(fit, problem), *_curves(problem), *_residuals(fit, problem)]
         ),
         *_sampled(),
+        *([] if "weighted_posterior" in fit.groups else [TRACE]),  # draws with weights have no order in time
     ]
 
 
@@ -125,6 +126,14 @@ def _predictive(fit: Fit) -> Drawing:
     )  # fmt: skip
 
 
+TRACE = Drawing(
+    "trace", plot_trace, "Draws against time",
+    "Draws of each parameter in the order in which they were made, one independent chain beside the other.",
+    "A check of the sampler: all chains should fill the same band from beginning to end, without drift or steps. "
+    "Dashed lines: 5 %, 50 % and 95 % of all draws.",
+)  # fmt: skip
+
+
 def _sampled() -> list[Drawing]:
     return [
         Drawing(
@@ -138,12 +147,6 @@ def _sampled() -> list[Drawing]:
             "Posterior density of each parameter and of each pair of parameters.",
             "Diagonal: each parameter with its median and 90 % interval. Below it: pairs; the inner contour holds half of the "
             "probability, the outer one 90 %. A thin slanted ridge means that only a combination of the two is known.",
-        ),
-        Drawing(
-            "trace", plot_trace, "Draws against time",
-            "Draws of each parameter in the order in which they were made, one independent ensemble beside the other.",
-            "A check of the sampler: all ensembles should fill the same band from beginning to end, without drift or steps. "
-            "Dashed lines: 5 %, 50 % and 95 % of all draws.",
         ),
     ]  # fmt: skip
 

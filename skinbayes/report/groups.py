@@ -98,7 +98,7 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
             GroupFinding(
                 column,
                 logarithmic,
-                _triple(scales[column]),
+                _scale(fit, column, scales[column]),
                 {level: _triple(draws[:, i]) for i, level in enumerate(levels)},
                 over_noise,
                 share,
@@ -215,6 +215,14 @@ def _unit(fit: Fit) -> str:
 
 def _triple(draws: FloatArray) -> Triple:
     low, middle, high = (float(q) for q in np.quantile(draws, [0.05, 0.5, 0.95]))
+    return low, middle, high
+
+
+def _scale(fit: Fit, column: str, draws: FloatArray) -> Triple:
+    label = f"group_scale[{column}]"
+    if label not in fit.names:
+        return _triple(draws)
+    low, middle, high = (float(q) for q in fit.quantiles(label))
     return low, middle, high
 
 

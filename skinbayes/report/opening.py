@@ -101,7 +101,7 @@ def _plain_symbol(fit: Fit, name: str) -> str:
 
 
 def _value(fit: Fit, label: str) -> str:
-    low, middle, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
+    low, middle, high = (float(q) for q in fit.quantiles(label))
     unit, symbol = fit.unit(label), fit.symbol(label)
     name = (
         ""
@@ -113,7 +113,7 @@ def _value(fit: Fit, label: str) -> str:
 
 
 def _relative_width(fit: Fit, label: str) -> float:
-    low, middle, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
+    low, middle, high = (float(q) for q in fit.quantiles(label))
     return (high - low) / abs(middle) if middle else np.inf
 
 

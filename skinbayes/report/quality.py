@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,7 +77,7 @@ def free_scatter(fit: Fit) -> str:
     if "noise_scale" not in fit.names or len(observables(fit)) != 1:
         return ""
     name = observables(fit)[0]
-    known, value = lookup(name), float(np.median(fit.draws("noise_scale")))
+    known, value = lookup(name), float(fit.quantiles("noise_scale", 0.5))
     if noise_family(str(fit.provenance["noise"][name])).logarithmic:
         return f"{percent(value)} of {known.symbol if known else spoken_name(name)}"
     return quantity(value, known.unit if known else "1")
@@ -133,31 +134,50 @@ def _of(inside: int, count: int) -> str:
     )
 
 
+TOLD = (
+    "{ensembles} independent ensembles of {walkers} walkers made {steps} steps each; the first {burn_in} were left out and "
+    "one in {thinning} of the others kept.",
+    "{runs} independent runs of nested sampling with {live_points} live points each were merged.",
+    "{acceptance} of the proposed moves were accepted.",
+    "The model was evaluated {evaluations} times.",
+    "ln of the evidence is {log_evidence}.",
+    "The smallest effective sample size of a parameter is {ess}.",
+    "The largest R-hat is {r_hat}.",
+    "{invalid} evaluations gave no finite value and counted as impossible.",
+)
+"""What is said about a run, each where its engine has all numbers by these names."""
+
+
+def told(fit: Fit) -> dict[str, str]:
+    """The diagnostics of a run by name, as text."""
+    run = fit.provenance["sampling"]
+    text = {name: str(value) for name, value in run.items() if isinstance(value, int | float | str) and value}
+    if "acceptance_fraction" in run:
+        text["acceptance"] = percent(float(np.mean(run["acceptance_fraction"])))
+    if run.get("log_evidence"):
+        value, error = run["log_evidence"]
+        text["log_evidence"] = f"{value:.2f} ± {error:.2f}"
+    if "ess_bulk" in run:
+        ess = float(np.min(run["ess_bulk"]))
+        text["ess"] = number(ess, 3) if ess > 0 else "unknown"
+    if "r_hat" in run:
+        text["r_hat"] = f"{np.max(run['r_hat']):.3f}"
+    return text
+
+
 def convergence(fit: Fit) -> list[str]:
     """How the sampler ran and what its stopping rule said."""
-    run = fit.provenance["sampling"]
-    ess, r_hat = np.min(run["ess_bulk"]), np.max(run["r_hat"])
-    acceptance = np.mean(run["acceptance_fraction"])
-    said = [
-        str(run["verdict"]),
-        f"{run['ensembles']} independent ensembles of {run['walkers']} walkers made {run['steps']} steps each; the first "
-        f"{run['burn_in']} were left out and one in {run['thinning']} of the others kept. "
-        f"{percent(float(acceptance))} of the proposed moves were accepted; the model was evaluated {run['evaluations']} times.",
-        f"The smallest effective sample size of a parameter is {number(float(ess), 3) if ess > 0 else 'unknown'}, "
-        f"the largest R-hat {r_hat:.3f}.",
-    ]
-    if note := more_than_kept(fit):
-        said.append(note)
-    if run["invalid"]:
-        said.append(f"{run['invalid']} evaluations gave no finite value and counted as impossible.")
-    return said
+    known = told(fit)
+    lines = [line.format_map(known) for line in TOLD if set(re.findall(r"{(\w+)}", line)) <= set(known)]
+    note = more_than_kept(fit)
+    return [str(fit.provenance["sampling"]["verdict"]), *lines, *([note] if note else [])]
 
 
 def more_than_kept(fit: Fit) -> str:
     """What an effective sample size above the number of stored draws is; empty if there is none."""
     sizes = fit.groups["posterior"].sizes
     kept = sizes["chain"] * sizes["draw"]
-    if max(fit.provenance["sampling"]["ess_bulk"]) <= kept:
+    if max(fit.provenance["sampling"].get("ess_bulk", [0.0])) <= kept:
         return ""
     return (
         f"Effective sample sizes (ESS) count all steps of the run; {kept} draws of them are kept, nearly independent, and all "
@@ -168,10 +188,12 @@ def more_than_kept(fit: Fit) -> str:
 def sampling(fit: Fit) -> str:
     """How the sampling went, in one line: it says nothing about the model."""
     run = fit.provenance["sampling"]
-    return (
-        f"The computation {'converged' if fit.converged else 'has NOT converged'}: effective sample size "
-        f"{_at_least(float(np.min(run['ess_bulk'])))}, R-hat at most {np.max(run['r_hat']):.3f}."
+    numbers = (
+        [f"effective sample size {_at_least(float(np.min(run['ess_bulk'])))}"] if "ess_bulk" in run else []
     )
+    numbers += [f"R-hat at most {np.max(run['r_hat']):.3f}"] if "r_hat" in run else []
+    said = f"The computation {'converged' if fit.converged else 'has NOT converged'}"
+    return f"{': '.join([said, ', '.join(numbers)]) if numbers else said}."
 
 
 def _at_least(ess: float) -> str:

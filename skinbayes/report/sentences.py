@@ -50,7 +50,7 @@ def named_products(fit: Fit) -> tuple[str, ...]:
 
 def value_sentence(fit: Fit, label: str) -> str:
     """Median and 90 % interval: ``"14.8 MPa; with 90 % probability between 7.81 and 28.3 MPa"``."""
-    low, middle, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
+    low, middle, high = (float(q) for q in fit.quantiles(label))
     unit = fit.unit(label)
     return (
         f"{quantity(middle, unit)}; with 90 % probability "
@@ -60,8 +60,8 @@ def value_sentence(fit: Fit, label: str) -> str:
 
 def narrowing_sentence(fit: Fit, label: str) -> str:
     """How much narrower the 90 % interval is than the prior's, as factors where all values are positive."""
-    after = np.quantile(fit.draws(label), [0.05, 0.95])
-    before = np.quantile(fit.draws(label, "prior"), [0.05, 0.95])
+    after = fit.quantiles(label, [0.05, 0.95])
+    before = fit.quantiles(label, [0.05, 0.95], "prior")
     unit = fit.unit(label)
     if before[0] > 0.0 and after[0] > 0.0:
         return (
@@ -104,7 +104,7 @@ def learnt_products(fit: Fit) -> list[str]:
                 f"{title_name(fit, label)}: {value_sentence(fit, label)}. {narrowing_sentence(fit, label)}{explained}"
             )
             continue
-        found = np.array([np.quantile(fit.draws(label), [0.05, 0.5, 0.95]) for label in labels])
+        found = np.array([fit.quantiles(label) for label in labels])
         unit, low, high = fit.unit(name), float(found[:, 0].min()), float(found[:, 2].max())
         medians = float(found[:, 1].min()), float(found[:, 1].max())
         middle = (
@@ -150,7 +150,7 @@ def disagreements(fit: Fit) -> list[str]:
         beyond = beyond if beyond.startswith("less") else f"only {beyond}"
         said.append(
             f"{title_name(fit, update.name)}: half of the posterior lies {side} "
-            f"{quantity(float(np.median(fit.draws(update.name))), fit.unit(update.name))}, but {beyond} of the prior "
+            f"{quantity(float(fit.quantiles(update.name, 0.5)), fit.unit(update.name))}, but {beyond} of the prior "
             f"(90 % of it between {interval(low, high, fit.unit(update.name), joint=' and ')}). "
             + (
                 "The data contradict the prior: question the prior, the model or the data before using the number."

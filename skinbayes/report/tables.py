@@ -24,7 +24,7 @@ MOST_UNFOLDED = 400
 
 @dataclass(frozen=True)
 class ParameterRow:
-    """One free parameter."""
+    """One free parameter; ``ess`` and ``r_hat`` are empty if the engine has none."""
 
     label: str
     symbol: str
@@ -73,8 +73,8 @@ def parameter_rows(fit: Fit) -> list[ParameterRow]:
                 source=str(prior["source"]),
                 median=quantity(median, unit),
                 interval=interval(float(row["q05"]), float(row["q95"]), unit, typical=median),
-                ess=sample_size(row["ess_bulk"]),
-                r_hat=f"{row['r_hat']:.3f}",
+                ess=sample_size(row["ess_bulk"]) if "ess_bulk" in row else "",
+                r_hat=f"{row['r_hat']:.3f}" if "r_hat" in row else "",
             )
         )
     return rows
@@ -93,7 +93,7 @@ def derived_rows(fit: Fit) -> tuple[list[DerivedRow], list[DerivedRow]]:
             shown += rows
             continue
         folded += rows
-        found = np.array([np.quantile(fit.draws(label), [0.05, 0.5, 0.95]) for label in labels])
+        found = np.array([fit.quantiles(label) for label in labels])
         low, high = float(found[:, 1].min()), float(found[:, 1].max())
         ends = float(found[:, 0].min()), float(found[:, 2].max())
         unit = fit.unit(name)
@@ -113,7 +113,7 @@ def derived_rows(fit: Fit) -> tuple[list[DerivedRow], list[DerivedRow]]:
 
 
 def _derived_row(fit: Fit, label: str) -> DerivedRow:
-    low, median, high = (float(q) for q in np.quantile(fit.draws(label), [0.05, 0.5, 0.95]))
+    low, median, high = (float(q) for q in fit.quantiles(label))
     unit = fit.unit(label)
     return DerivedRow(
         symbol=fit.symbol(label),
@@ -131,15 +131,15 @@ def _interval(low: float, high: float, unit: str, typical: float) -> str:
 
 
 def fixed_rows(fit: Fit) -> list[FixedRow]:
-    """Inputs that were not inferred."""
+    """Inputs that were not inferred, or that follow one that was."""
     rows = []
-    for label, entry in fit.provenance["fixed"].items():
+    for label, entry in (fit.provenance["fixed"] | fit.provenance.get("tied", {})).items():
         name, _, level = label.partition("[")
         known = lookup(name)
         symbol = (known.symbol if known else name) + (f" ({level.removesuffix(']')})" if level else "")
-        value = float(entry["value"])
         unit = known.unit if known else "1"
-        rows.append(FixedRow(symbol, spoken_name(label), quantity(value, unit, 6), str(entry["source"])))
+        value = str(entry["text"]) if "text" in entry else quantity(float(entry["value"]), unit, 6)
+        rows.append(FixedRow(symbol, spoken_name(label), value, str(entry["source"])))
     return rows
 
 
@@ -149,9 +149,12 @@ def settings(fit: Fit) -> list[tuple[str, str]]:
     entries = [
         ("Model", str(fit.provenance["model"])),
         ("Created", str(fit.provenance["created"])),
-        ("Seed", str(run["seed"])),
-        ("Ensembles × walkers × steps", f"{run['ensembles']} × {run['walkers']} × {run['steps']}"),
-        ("Burn-in, thinning", f"{run['burn_in']} steps, one draw in {run['thinning']}"),
+    ]
+    # of the run, every number and word that is no sentence, by name: engines differ
+    entries += [
+        (str(name).replace("_", " ").capitalize(), str(value))
+        for name, value in run.items()
+        if isinstance(value, int | float | str) and not isinstance(value, bool) and name != "verdict"
     ]
     if seconds:
         entries.append(("Time", f"{number(float(seconds['total']))} s"))

@@ -1,6 +1,7 @@
 """Numbers that tell whether chains have converged, in NumPy alone.
 
-ArviZ computes R-hat as well, but importing it takes seconds, longer than many fits; a test holds the two equal.
+ArviZ has the same R-hat, and a test holds the two equal. It is asked for each coordinate at each check of a run: of four chains
+of 8192 draws ``arviz_stats`` computes it in 38 ms, these functions in 13 ms, and its import takes as long as a small fit.
 """
 
 from __future__ import annotations
@@ -69,13 +70,6 @@ def r_hat(chains: ArrayLike) -> float:
     if within == 0.0:
         return float("nan") if between == 0.0 else float("inf")
     return float(np.sqrt((draws - 1) / draws + between / within))
-
-
-def split_r_hat(chains: ArrayLike) -> float:
-    """R-hat of the first and second halves of chains (shape ``(chains, draws)``; a middle draw is dropped)."""
-    array = np.asarray(chains, dtype=float)
-    half = array.shape[1] // 2
-    return r_hat(np.concatenate((array[:, :half], array[:, -half:])))
 
 
 def rank_r_hat(chains: ArrayLike) -> float:

@@ -13,11 +13,11 @@ from skinbayes.sampling.advance import Block, EnsembleState
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
-from skinbayes.sampling.progress import Progress
+from skinbayes.sampling.progress import EnsembleProgress
 from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
-from skinbayes.sampling.stragglers import gathered, last_gathering, left_behind
+from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.workers import advancing
 
@@ -40,7 +40,7 @@ def run_ensembles(
     target: Target,
     options: SamplerOptions,
     store: SampleStore | None = None,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[EnsembleProgress], None] | None = None,
     moves: MoveFactory | None = None,
 ) -> Chains:
     """Sample a target until the stopping rule is met or ``max_steps`` are made.
@@ -137,9 +137,9 @@ def _progress(
     states: list[EnsembleState],
     spent: float,
     blocks: int,
-) -> Progress:
+) -> EnsembleProgress:
     dimension = states[0].positions.shape[1]
-    return Progress(
+    return EnsembleProgress(
         steps=steps,
         max_steps=last,
         report=report,

@@ -16,7 +16,38 @@ not depend on the number of walkers."""
 
 
 @dataclass(frozen=True)
-class SamplerOptions:
+class EngineOptions:
+    """What every engine can be told.
+
+    Attributes
+    ----------
+    seed : non-negative integer from which every random stream is spawned
+    ess : effective sample size wanted in every coordinate
+    cores : worker processes
+    costly : the target takes so long to evaluate that fewer walkers are better
+
+    Raises
+    ------
+    InputError
+        If a value is out of range; the message names it.
+    """
+
+    seed: int
+    ess: float = 2000.0
+    cores: int = 1
+    costly: bool = False
+
+    def __post_init__(self) -> None:
+        whole("seed", self.seed, 0)
+        whole("cores", self.cores, 1)
+        _above("ess", self.ess, 0.0)
+
+    def check(self, dimension: int) -> None:
+        """Raise InputError if a target of ``dimension`` coordinates cannot be sampled with these options."""
+
+
+@dataclass(frozen=True)
+class SamplerOptions(EngineOptions):
     """Settings of a run of several independent ensembles.
 
     Only ``seed``, ``ensembles`` and ``walkers`` (and the moves) change the draws; ``block_steps`` sets when they
@@ -24,23 +55,14 @@ class SamplerOptions:
 
     Attributes
     ----------
-    seed : non-negative integer from which every random stream is spawned
-    ensembles : number of independent ensembles; they are the chains of R-hat
+    ensembles : number of independent ensembles; they are the chains of R-hat, and what ``cores`` share
     walkers : walkers of each ensemble, even and at least twice the dimension; None is
         :data:`DEFAULT_WALKERS` (:data:`FEWER_WALKERS` if ``costly``) or four times the dimension, whichever is larger
-    ess : effective sample size wanted in every coordinate, over all ensembles together
     r_hat : largest acceptable rank-normalised split R-hat between ensembles
     steps_over_tau : kept steps, summed over the ensembles, must reach this many autocorrelation times
     max_steps : steps of each ensemble after which the run ends, converged or not (a total: resuming does not add)
     block_steps : steps between two writes to the store
-    cores : worker processes that share the ensembles
     vectorize : evaluate half an ensemble in one call, else walker by walker
-    costly : the target takes so long to evaluate that fewer walkers are better
-
-    Raises
-    ------
-    InputError
-        If a value is out of range; the message names it.
 
     Examples
     --------
@@ -50,31 +72,29 @@ class SamplerOptions:
     160
     """
 
-    seed: int
     ensembles: int = 4
     walkers: int | None = None
-    ess: float = 2000.0
     r_hat: float = 1.01
     steps_over_tau: float = 50.0
     max_steps: int = 10_000
     block_steps: int = 100
-    cores: int = 1
     vectorize: bool = True
-    costly: bool = False
 
     def __post_init__(self) -> None:
-        _whole("seed", self.seed, 0)
-        _whole("ensembles", self.ensembles, 2)
+        super().__post_init__()
+        whole("ensembles", self.ensembles, 2)
         if self.walkers is not None:
-            _whole("walkers", self.walkers, 4)
+            whole("walkers", self.walkers, 4)
             if self.walkers % 2:
                 raise InputError(f"sampler option walkers: {self.walkers} found, an even number expected.")
-        _whole("block_steps", self.block_steps, 1)
-        _whole("max_steps", self.max_steps, self.block_steps)
-        _whole("cores", self.cores, 1)
-        _above("ess", self.ess, 0.0)
+        whole("block_steps", self.block_steps, 1)
+        whole("max_steps", self.max_steps, self.block_steps)
         _above("r_hat", self.r_hat, 1.0)
         _above("steps_over_tau", self.steps_over_tau, 0.0)
+
+    def check(self, dimension: int) -> None:
+        """Raise InputError if there are too few walkers for ``dimension`` coordinates."""
+        self.walkers_for(dimension)
 
     def walkers_for(self, dimension: int) -> int:
         """Walkers of each ensemble for a target of ``dimension`` coordinates; InputError if too few were asked for."""
@@ -88,7 +108,8 @@ class SamplerOptions:
         return self.walkers
 
 
-def _whole(name: str, value: object, least: int) -> None:
+def whole(name: str, value: object, least: int) -> None:
+    """Refuse what is no whole number of at least ``least``."""
     if isinstance(value, bool) or not isinstance(value, int) or value < least:
         raise InputError(
             f"sampler option {name}: {value!r} found, a whole number of at least {least} expected."

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf, isfinite
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -17,9 +17,32 @@ Phase = Literal["starting", "settling", "collecting", "done"]
 _BURN_IN_SHARE, _BURN_IN_TIMES = 0.2, 10.0  # of the stopping rule
 
 
+class RunProgress(Protocol):
+    """How far a run of any engine is."""
+
+    @property
+    def steps(self) -> int:
+        """Steps made so far, of whatever kind the engine makes."""
+
+    def sentence(self, width: int | None = None) -> str:
+        """What is missing, in words; in fewer words where ``width`` characters are too few."""
+
+
 @dataclass(frozen=True)
-class Progress:
-    """How far a run is, told when it begins (or is taken up) and after every block.
+class PlainProgress:
+    """Progress of an engine that says one thing only."""
+
+    steps: int
+    words: str
+
+    def sentence(self, width: int | None = None) -> str:
+        """The words."""
+        return self.words
+
+
+@dataclass(frozen=True)
+class EnsembleProgress:
+    """How far a run of ensembles is, told when it begins (or is taken up) and after every block.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ A run has converged if all of this holds in every coordinate, on the ranks of th
 6. every walker has moved.
 
 Burn-in, which is discarded, is ten autocorrelation times of the second half or a fifth of the steps, whichever
-is longer, but at most half; and if walkers that were left behind were taken along (see ``stragglers``), all steps until then
+is longer, but at most half; and if walkers that were left behind were taken along (see ``stuck_walkers``), all steps until then
 and a fifth of those after it.
 
 Fifty autocorrelation times are asked of the sum over ensembles, not of each, because the autocorrelation is
@@ -76,7 +76,7 @@ class StoppingReport:
     ess_bulk, ess_tail : effective sample size of the ranks, and the smaller one of the 5 % and 95 % quantiles
     r_hat : rank-normalised split R-hat, the chains being ensembles
     walker_r_hat : rank-normalised R-hat, the chains being walkers
-    stuck_walkers : walkers that never moved after burn-in
+    unmoved_walkers : walkers that never moved after burn-in
     missing : sentences, one for each condition that is not met
     """
 
@@ -89,7 +89,7 @@ class StoppingReport:
     ess_tail: FloatArray
     r_hat: FloatArray
     walker_r_hat: FloatArray
-    stuck_walkers: int
+    unmoved_walkers: int
     missing: tuple[str, ...]
 
     @property
@@ -160,7 +160,7 @@ def judge(
         ess_tail=np.nan_to_num(draws / (tail_tau * stride)),
         r_hat=r_hat_ensembles,
         walker_r_hat=r_hat_walkers,
-        stuck_walkers=int(np.count_nonzero(~np.any(kept[:, 1:] != kept[:, :-1], axis=(1, 3)))),
+        unmoved_walkers=int(np.count_nonzero(~np.any(kept[:, 1:] != kept[:, :-1], axis=(1, 3)))),
         missing=(),
     )
     return replace(report, missing=tuple(_missing(report, kept.shape[0], options)))
@@ -224,8 +224,8 @@ def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) ->
     name, value = _largest(report, report.walker_r_hat)
     if not value <= WALKER_R_HAT:
         yield f"single walkers disagree about {name}: R-hat {value:.3f}, at most {WALKER_R_HAT:g} is accepted"
-    if report.stuck_walkers:
-        yield f"{report.stuck_walkers} of all walkers never moved"
+    if report.unmoved_walkers:
+        yield f"{report.unmoved_walkers} of all walkers never moved"
 
 
 def _largest(report: StoppingReport, values: FloatArray) -> tuple[str, float]:

@@ -10,7 +10,7 @@ from skinbayes.arrays import FloatArray
 
 
 class Target(Protocol):
-    """A log-density on the whole real space, evaluated in batches.
+    """A log-density on the whole real space, evaluated in batches, and the prior and likelihood it is made of.
 
     Implementations are frozen and can be pickled (they travel to worker processes).
     """
@@ -31,3 +31,12 @@ class Target(Protocol):
 
     def starts(self, rng: np.random.Generator, count: int) -> FloatArray:
         """``count`` dispersed positions of finite density, shape ``(count, D)``."""
+
+    def prior_transform(self, unit: FloatArray) -> FloatArray:
+        """Positions at quantiles of the prior, given as rows of the unit cube, both ``(B, D)``: what nested sampling needs."""
+
+    def log_likelihood(self, position: FloatArray) -> FloatArray:
+        """Log-likelihood of each row of ``position``, shape ``(B,)``; −inf where impossible."""
+
+    def integrated_out(self, position: FloatArray, rng: np.random.Generator) -> dict[str, FloatArray]:
+        """Quantities that were integrated out, drawn at positions ``(B, D)``, each ``(B,)`` under a name for people."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from skinbayes.contact import mean_separation
 from skinbayes.emulation.chebyshev import lobatto
 from skinbayes.wetting._curve import Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
+from skinbayes.wetting._solids import Solid
 from skinbayes.wetting._types import BoolArray, IndexArray
 from skinbayes.wetting.bridge_table import BridgeTable, skin_groups
 
@@ -36,7 +37,8 @@ class Bridged(NamedTuple):
 
     def with_layer(self, modulus: FloatArray) -> Bridged:
         """The same with other moduli of the layer, Pa, shape ``(B,)``."""
-        skin = replace(self.source.skin, young_modulus_layer=modulus)
+        skin: Any = self.source.skin  # a layered one: others have no layer
+        skin = replace(skin, young_modulus_layer=modulus)
         source = GapSource(self.source.spectrum, skin, self.source.area_correction, self.source.closure)
         return self._replace(source=source)
 
@@ -50,8 +52,8 @@ class Bridged(NamedTuple):
         """Flooded film ū(p0), m, and which skins the table knows, shape ``(B,)``; and the curves of these."""
         known, curve = np.zeros(self.load.shape, dtype=bool), None
         separation = np.full(self.load.shape, np.nan)
-        if self.table is not None:
-            source = self.source
+        source = self.source
+        if self.table is not None and isinstance(source.skin, Solid):
             groups = skin_groups(
                 self.load,
                 self.pull,

@@ -9,13 +9,13 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import LayeredSkin, gap_distribution
+from skinbayes.contact import ElasticSolid, gap_distribution
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.roughness.tabulated import TabulatedSpectrum
 from skinbayes.wetting._mixture import Mixture
 
 Closure = Literal["gaussian", "sharp"]
-Thing = TypeVar("Thing", SelfAffineSpectrum, LayeredSkin)
+Thing = TypeVar("Thing")
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class GapSource:
     """
 
     spectrum: PowerSpectrum
-    skin: LayeredSkin
+    skin: ElasticSolid
     area_correction: FloatArray
     closure: Closure
 
@@ -70,12 +70,12 @@ def map_spectrum(spectrum: PowerSpectrum, change: Callable[[FloatArray], FloatAr
     return spectrum
 
 
-def map_skin(skin: LayeredSkin, change: Callable[[FloatArray], FloatArray]) -> LayeredSkin:
+def map_skin(skin: ElasticSolid, change: Callable[[FloatArray], FloatArray]) -> ElasticSolid:
     """The skin with ``change`` applied to those of its parameters that are arrays."""
     return _changed(skin, change)
 
 
-def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, ...]]:
+def batch_shapes(spectrum: PowerSpectrum, skin: ElasticSolid) -> list[tuple[int, ...]]:
     """Shapes of the parameters that make a batch."""
     things: list[Any] = [skin, spectrum] if isinstance(spectrum, SelfAffineSpectrum) else [skin]
     shapes = [np.shape(getattr(thing, field.name)) for thing in things for field in fields(thing)]
@@ -83,5 +83,7 @@ def batch_shapes(spectrum: PowerSpectrum, skin: LayeredSkin) -> list[tuple[int, 
 
 
 def _changed(thing: Thing, change: Callable[[FloatArray], FloatArray]) -> Thing:
-    values = ((field.name, getattr(thing, field.name)) for field in fields(thing))
-    return replace(thing, **{name: change(value) for name, value in values if np.ndim(value)})
+    parts: Any = thing  # a frozen dataclass
+    values = ((field.name, getattr(thing, field.name)) for field in fields(parts))
+    changed: Thing = replace(parts, **{name: change(value) for name, value in values if np.ndim(value)})
+    return changed

@@ -14,13 +14,14 @@ from functools import partial
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import LayeredSkin, mean_separation
+from skinbayes.contact import mean_separation
 from skinbayes.emulation import Box, Interpolant, Places, Progress, Tasks, counts_along, refined
 from skinbayes.emulation.chebyshev import values_at_nodes
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.wetting._curve import REFERENCE, TERMS, Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
+from skinbayes.wetting._solids import Solid, scale_modulus, shape_groups, solid_of_groups
 from skinbayes.wetting._types import BoolArray
 
 SURFACE_GROUPS = ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
@@ -32,6 +33,7 @@ _TRIALS = 48
 _AIM, _WORST = 3e-4, 6e-4
 _CUT, _CUTS = 0.05, 16  # by which a box is cut whose corners have no solution
 _TILT = 1 / 3  # exponent of E0/E1 in the load: skins whose pull runs away then lie beyond one value of it
+_NO_LAYER = np.zeros(())  # ln(E0/E1)
 _PULL = 1e-5  # m; the pull varies linearly far below it
 _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 
@@ -71,13 +73,14 @@ def skin_groups(
     *,
     height: FloatArray,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: Solid,
     area_correction: FloatArray,
 ) -> dict[str, FloatArray]:
     """Groups of parameters on which capillary bridges depend, up to scale (from Eqs. 3 to 7 of the paper).
 
     ``stiffness = ln(E0/E1)``, ``load = ln[p0/(E1^⅔ E0^⅓ h_rms)]``, ``pull = ln(1 + γ_w Σcos θ E1/(p0² 10 µm))``, ln of the
-    thickness of the layer and of the wavevectors; Hurst exponent, Poisson ratios and γ as they are. Lengths are in m.
+    thickness of the layer and of the wavevectors; Hurst exponent, Poisson ratios and γ as they are. Lengths are in m. A
+    homogeneous solid has no stiffness and no thickness of a layer.
 
     Parameters
     ----------
@@ -98,6 +101,7 @@ def skin_groups(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> groups = skin_groups(np.array([6830.0]), np.array([0.0845]), height=np.array([22.4e-6]),
@@ -105,14 +109,12 @@ def skin_groups(
     >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["pull"].round(3))
     [5.858] [7.679] [1.531]
     """
-    bulk = np.asarray(skin.young_modulus_bulk)
-    groups = {
-        "stiffness": np.log(skin.young_modulus_layer / bulk),
-        "load": np.log(pressure / (bulk * height)) - _TILT * np.log(skin.young_modulus_layer / bulk),
+    bulk, shape = scale_modulus(skin), shape_groups(skin)
+    groups = {name: shape[name] for name in ("stiffness",) if name in shape}
+    groups |= {
+        "load": np.log(pressure / (bulk * height)) - _TILT * shape.get("stiffness", _NO_LAYER),
         "pull": np.log1p(pull * bulk / np.square(pressure) / _PULL),
-        "layer_thickness": np.log(skin.layer_thickness),
-        "poisson_ratio_layer": np.asarray(skin.poisson_ratio_layer),
-        "poisson_ratio_bulk": np.asarray(skin.poisson_ratio_bulk),
+        **shape,
         "area_correction": np.asarray(area_correction),
     }
     if isinstance(spectrum, SelfAffineSpectrum):
@@ -159,6 +161,7 @@ def bridge_table(
     --------
     Layers from 6 to 8 MPa, down to a film of about 0.1 µm:
 
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.emulation import Box
     >>> from skinbayes.roughness import named_surface
     >>> skins = LayeredSkin(young_modulus_layer=np.array([6e6, 8e6]), young_modulus_bulk=20e3,
@@ -198,7 +201,7 @@ def bridge_table(
 
 def _pressing(groups: Places) -> FloatArray:
     """ln[p0/(E1 h_rms)]."""
-    return np.asarray(groups["load"] + _TILT * groups["stiffness"])
+    return np.asarray(groups["load"] + _TILT * groups.get("stiffness", _NO_LAYER))
 
 
 def _end(depth: float, log_separation: FloatArray, pressing: FloatArray) -> FloatArray:
@@ -256,13 +259,7 @@ def _curves(
     else:
         waves = {name: np.exp(given[name]) for name in SURFACE_GROUPS[1:]}
         surface = SelfAffineSpectrum(rms_height=height, hurst_exponent=given["hurst_exponent"], **waves)
-    skin = LayeredSkin(
-        young_modulus_layer=_BULK * np.exp(given["stiffness"]),
-        young_modulus_bulk=bulk,
-        poisson_ratio_layer=given["poisson_ratio_layer"],
-        poisson_ratio_bulk=given["poisson_ratio_bulk"],
-        layer_thickness=np.exp(given["layer_thickness"]),
-    )
+    skin = solid_of_groups(given, bulk)
     pressing = _pressing(given)
     load = _BULK * _HEIGHT * np.exp(pressing)
     pull = np.expm1(given["pull"]) * _PULL * np.square(load) / _BULK

@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
-    LayeredSkin,
+    ElasticSolid,
     mean_separation,
     relative_contact_area,
     twice_stress_variance,
@@ -104,7 +104,7 @@ def capillary_state(
     nominal_pressure: ArrayLike,
     *,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     surface_tension: ArrayLike,
     contact_angle_skin: ArrayLike,
     contact_angle_counterface: ArrayLike,
@@ -163,6 +163,7 @@ def capillary_state(
     Examples
     --------
     >>> from math import radians
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> state = capillary_state(6e-6, 6830.0, spectrum=named_surface("paper_reference"), skin=wet,
@@ -204,7 +205,7 @@ def capillary_state_at_gap(
     nominal_pressure: ArrayLike,
     *,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     surface_tension: ArrayLike,
     contact_angle_skin: ArrayLike,
     contact_angle_counterface: ArrayLike,
@@ -252,6 +253,7 @@ def capillary_state_at_gap(
     Examples
     --------
     >>> from math import radians
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> surface = named_surface("paper_reference")
@@ -308,7 +310,7 @@ def _flatten(
     wanted: ArrayLike,
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     surface_tension: ArrayLike,
     contact_angle_skin: ArrayLike,
     contact_angle_counterface: ArrayLike,

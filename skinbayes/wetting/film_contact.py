@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import prod
+from typing import cast
 
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
+    ElasticSolid,
     LayeredSkin,
     total_contact_area,
     twice_stress_variance,
@@ -86,11 +88,11 @@ def film_contact(
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
     *,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     surface_tension: ArrayLike,
     contact_angle_skin: ArrayLike,
     contact_angle_counterface: ArrayLike,
-    young_modulus_layer_dry: ArrayLike,
+    young_modulus_layer_dry: ArrayLike | None = None,
     yield_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
     closure: Closure = "gaussian",
@@ -102,7 +104,7 @@ def film_contact(
     """Contact area of drying skin against the film, flooded, bridged and dry (Sect. 5 and Figs. 8 and 9 of the paper).
 
     Flooded skin carries p0 alone, bridged skin p0 and the pull of `capillary_state`, dry skin p0 with the modulus of dry stratum
-    corneum; the area of each is elastoplastic. Skin counts as dry below ``film_floor``.
+    corneum, other solids with their own; the area of each is elastoplastic. Skin counts as dry below ``film_floor``.
 
     Parameters
     ----------
@@ -112,7 +114,7 @@ def film_contact(
     surface_tension : γ_w, N/m, ≥ 0, batch shape
     contact_angle_skin : θ1, rad, 0 … π, batch shape
     contact_angle_counterface : θ2, rad, 0 … π, batch shape
-    young_modulus_layer_dry : E0 of the dry layer, Pa, > 0, batch shape
+    young_modulus_layer_dry : E0 of the dry layer, Pa, > 0, batch shape; None for a solid that does not harden as it dries
     yield_stress : σ_Y, Pa, > 0, batch shape; inf is purely elastic
     area_correction : γ, dimensionless, 0 < γ ≤ 1, batch shape
     closure : P(u) from Gaussians (default) or from sharp gaps, see `gap_distribution`
@@ -143,6 +145,7 @@ def film_contact(
     Examples
     --------
     >>> from math import radians
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> wet = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> contact = film_contact(6830.0, named_surface("paper_reference"), skin=wet, surface_tension=0.0727,
@@ -153,6 +156,12 @@ def film_contact(
     """
     if closure not in CLOSURES:
         raise InputError(f"closure is {closure!r}, but must be one of {', '.join(map(repr, CLOSURES))}.")
+    if young_modulus_layer_dry is None and hardening_film is not None:
+        raise InputError(
+            "hardening_film is given, but not young_modulus_layer_dry, the modulus that it leads to."
+        )
+    if young_modulus_layer_dry is not None and not isinstance(skin, LayeredSkin):
+        raise InputError("young_modulus_layer_dry is given, but the solid has no layer that could harden.")
     arguments = [
         np.asarray(x, dtype=np.float64)
         for x in (
@@ -163,15 +172,13 @@ def film_contact(
             area_correction,
         )
     ]
-    dry, limit, floor, power = (
-        np.asarray(x, dtype=np.float64)
-        for x in (young_modulus_layer_dry, yield_stress, film_floor, hardening_sharpness)
+    limit, floor, power = (
+        np.asarray(x, dtype=np.float64) for x in (yield_stress, film_floor, hardening_sharpness)
     )
+    dry = None if young_modulus_layer_dry is None else np.asarray(young_modulus_layer_dry, dtype=np.float64)
     half = None if hardening_film is None else np.asarray(hardening_film, dtype=np.float64)
     load, tension, first, second, gamma = arguments
-    shapes = [x.shape for x in (*arguments, dry, limit, floor, power)] + (
-        [] if half is None else [half.shape]
-    )
+    shapes = [x.shape for x in (*arguments, dry, limit, floor, power, half) if x is not None]
     batch = np.broadcast_shapes(*shapes, *batch_shapes(spectrum, skin))
 
     def flat(value: FloatArray) -> FloatArray:
@@ -181,9 +188,10 @@ def film_contact(
         pull = np.where(tension >= 0, tension, np.nan) * np.maximum(cosine_sum(first, second), 0.0)
         surface, gamma = map_spectrum(spectrum, flat), flat(gamma) if gamma.size > 1 else gamma.reshape(())
         height = np.broadcast_to(rms_height(surface), (prod(batch),))
-        load, pull, dry, limit = (
-            flat(x) for x in (np.where((load > 0) & (load < np.inf), load, np.nan), pull, dry, limit)
+        load, pull, limit = (
+            flat(x) for x in (np.where((load > 0) & (load < np.inf), load, np.nan), pull, limit)
         )
+        dry = None if dry is None else flat(dry)
         flat_skin = map_skin(skin, flat)
         bridged = Bridged(load, pull, GapSource(surface, flat_skin, gamma, closure), height, table)
 
@@ -202,11 +210,11 @@ def film_contact(
 
             log_area = (
                 _finer(_log_area(bridged.source, limit, np.exp(bridged.log_pressure(films))))
-                if half is None
+                if half is None or dry is None
                 else _hardened(films, grid, bridged, dry, limit, flat(half), flat(power))
             )
         fine = np.exp(log_area)
-        stiff = bridged.with_layer(dry)
+        stiff = bridged if dry is None else bridged.with_layer(dry)
         dry_area = np.exp(_log_area(stiff.source, limit, load[:, None]))[:, 0]
         doubtful = (
             pull
@@ -265,7 +273,7 @@ def _hardened(
     power: FloatArray,
 ) -> FloatArray:
     """ln A/A0 on a grid of films of shape ``(B, points)`` whose layer hardens, between skins of a few moduli and ``films``."""
-    wet = np.broadcast_to(np.asarray(bridged.source.skin.young_modulus_layer), dry.shape)
+    wet = np.broadcast_to(np.asarray(cast(LayeredSkin, bridged.source.skin).young_modulus_layer), dry.shape)
     # each skin with all its moduli, one after the other
     rows = np.repeat(np.arange(dry.size), _MODULI)
     moduli = wet[:, None] * np.exp(np.log(dry / wet)[:, None] * lobatto(_MODULI))

@@ -11,18 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import prod
 
 import numpy as np
 from scipy.ndimage import map_coordinates, spline_filter
 from scipy.special import ndtr
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import LayeredSkin
 from skinbayes.emulation import Box, Places, Progress, Tasks
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.wetting._falling import falling_root
 from skinbayes.wetting._gaps import GapSource
+from skinbayes.wetting._solids import Solid, scale_modulus, shape_groups, solid_of_groups
 from skinbayes.wetting._types import BoolArray
 
 _STEPS = {"load": 0.15, "gap": 0.25, "stiffness": 0.2, "layer_thickness": 0.3}
@@ -31,6 +32,7 @@ _RUNG = 0.12  # of the ladder of ln p on which roots are told apart, as in the s
 _FIRST_RUNGS = 3
 _CLOSE = 1e-12  # of ln p
 _LITTLE = 1e-12  # of the area, added to F so that its logarithm has a floor
+_ONE = "skin"  # number of a skin, the only thing that tells homogeneous ones apart
 _BLOCK = 64  # skins at a time
 _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 
@@ -103,12 +105,12 @@ class HumidTable:
 
 
 def humid_groups(
-    pressure: FloatArray, gap: FloatArray, *, height: FloatArray, skin: LayeredSkin
+    pressure: FloatArray, gap: FloatArray, *, height: FloatArray, skin: Solid
 ) -> dict[str, FloatArray]:
     """Groups of parameters on which the share of bridged gaps depends, up to scale (from Eqs. 3 to 7 of the paper).
 
-    ``load = ln[p0/(E1 h_rms)]``, ``gap = ln(d_K/h_rms)``, ``stiffness = ln(E0/E1)``, ``layer_thickness = ln d``; lengths in m.
-    Poisson ratios, γ and the shape of the spectrum are those of the table.
+    ``load = ln[p0/(E1 h_rms)]``, ``gap = ln(d_K/h_rms)``, ``stiffness = ln(E0/E1)``, ``layer_thickness = ln d``; lengths in m. A
+    homogeneous solid has the first two. Poisson ratios, γ and the shape of the spectrum are those of the table.
 
     Parameters
     ----------
@@ -127,16 +129,16 @@ def humid_groups(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> groups = humid_groups(np.array([6830.0]), np.array([1e-9]), height=np.array([22.4e-6]), skin=skin)
     >>> print({name: float(value[0].round(3)) for name, value in groups.items()})
     {'load': 9.632, 'gap': -10.017, 'stiffness': 5.858, 'layer_thickness': -10.82}
     """
     groups = {
-        "load": np.log(pressure / (skin.young_modulus_bulk * height)),
+        "load": np.log(pressure / (scale_modulus(skin) * height)),
         "gap": np.log(gap / height),
-        "stiffness": np.log(skin.young_modulus_layer / np.asarray(skin.young_modulus_bulk)),
-        "layer_thickness": np.log(skin.layer_thickness),
+        **{name: value for name, value in shape_groups(skin).items() if name in _STEPS},
     }
     return {name: np.broadcast_to(value, pressure.shape) for name, value in groups.items()}
 
@@ -145,7 +147,7 @@ def humid_table(
     box: Box,
     *,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: Solid,
     area_correction: FloatArray,
     most: int = 250_000,
     progress: Progress | None = None,
@@ -177,6 +179,7 @@ def humid_table(
 
     Examples
     --------
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.emulation import Box
     >>> from skinbayes.roughness import named_surface
     >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
@@ -188,13 +191,15 @@ def humid_table(
     14 1.428e-04
     """
     nodes = {}
-    for name, step in _STEPS.items():
+    for name, step in ((name, step) for name, step in _STEPS.items() if name in box.ends):
         low, high = box.ends[name]
         count = int(np.ceil((high - low) / step - 1e-9)) + 1
         room = 0 if count == 1 else _ROOM
         nodes[name] = low + step * np.arange(-room, count + room)
-    skins = [x.reshape(-1) for x in np.meshgrid(nodes["stiffness"], nodes["layer_thickness"], indexing="ij")]
-    total = skins[0].size
+    shape = {name: x.size for name, x in nodes.items() if name in shape_groups(skin)}
+    grids = np.meshgrid(*(nodes[name] for name in shape), indexing="ij")
+    skins = {name: x.reshape(-1) for name, x in zip(shape, grids, strict=True)}
+    total = prod(shape.values())
     if total * nodes["load"].size > most:
         return None
     surface: PowerSpectrum
@@ -209,23 +214,20 @@ def humid_table(
 
     def spanned(places: Places) -> FloatArray:
         """F at all loads and gaps, shape ``(M, loads, gaps)``."""
-        stiffness, thickness = np.exp(places["stiffness"]), np.exp(places["layer_thickness"])
-        body = replace(
-            skin, young_modulus_layer=_BULK * stiffness, young_modulus_bulk=_BULK, layer_thickness=thickness
-        )
+        count = len(places[_ONE])
+        some = {name: places[name] for name in shape}
+        body = solid_of_groups({**shape_groups(skin), **some}, np.asarray(_BULK))
         source = GapSource(surface, body, area_correction, "gaussian")
-        mixture, _ = source.at(np.broadcast_to(pressure, (stiffness.size, pressure.size)))
+        mixture, _ = source.at(np.broadcast_to(pressure, (count, pressure.size)))
         place, out = mixture.centre / mixture.width, 1 / mixture.width
         # both are lower tails, whose difference keeps its digits
         below = (ndtr(each * out - place) - ndtr(-each * out - place) for each in gap)
         return np.stack([(mixture.share * part).sum(axis=-1) for part in below], axis=-1)
 
-    places = dict(zip(("stiffness", "layer_thickness"), skins, strict=True))
-    values = Tasks(progress=progress).at("skins", spanned, places, _BLOCK)
+    values = Tasks(progress=progress).at("skins", spanned, {_ONE: np.arange(float(total)), **skins}, _BLOCK)
     if not np.isfinite(values).all():
         return None
-    shape = [nodes[name].size for name in ("stiffness", "layer_thickness")]
-    grid = np.moveaxis(values.reshape(*shape, pressure.size, gap.size), (2, 3), (0, 1))
+    grid = np.moveaxis(values.reshape(*shape.values(), pressure.size, gap.size), (-2, -1), (0, 1))
     axes = {name: (float(x[0]), x.size) for name, x in nodes.items() if x.size > 1}
     log_share = np.log(np.maximum(grid, 0.0) + _LITTLE).reshape([count for _, count in axes.values()])
     return HumidTable(box=box, axes=axes, coefficients=spline_filter(log_share, order=3))

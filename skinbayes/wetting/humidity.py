@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.contact import AREA_CORRECTION, LayeredSkin
+from skinbayes.contact import AREA_CORRECTION, ElasticSolid
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._gaps import Closure
 from skinbayes.wetting.capillary import Branch, CapillaryState, capillary_state_at_gap, kelvin_gap
@@ -129,7 +129,7 @@ def capillary_state_in_humid_air(
     *,
     nominal_pressure: ArrayLike,
     spectrum: PowerSpectrum,
-    skin: LayeredSkin,
+    skin: ElasticSolid,
     contact_angle_skin: ArrayLike,
     contact_angle_counterface: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
@@ -175,6 +175,7 @@ def capillary_state_in_humid_air(
     Examples
     --------
     >>> from math import radians
+    >>> from skinbayes.contact import LayeredSkin
     >>> from skinbayes.roughness import named_surface
     >>> stiff = LayeredSkin(young_modulus_layer=70e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> state = capillary_state_in_humid_air([0.3, 0.9], 293.15, nominal_pressure=6830.0,

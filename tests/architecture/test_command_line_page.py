@@ -60,7 +60,11 @@ def test_fit_and_compare_print_what_the_page_shows(tmp_path: Path) -> None:
         printed = "".join(page.run(command, tmp_path) for command in commands)
         # draws are the same from run to run, but libraries may differ in the last bit of a logarithm
         for name, row in numbers(shown).items():
-            assert numbers(printed)[name] == pytest.approx(row, rel=0.1, abs=0.1), f"{commands[-1]}: {name}"
+            found = numbers(printed)[name]
+            if subcommand(commands[-1]) == "compare" and row:
+                # how many data have a Pareto k above its limit: one of them lies at the limit
+                assert abs(found.pop() - row.pop()) <= 1, f"{commands[-1]}: {name}"
+            assert found == pytest.approx(row, rel=0.1, abs=0.1), f"{commands[-1]}: {name}"
         assert set(numbers(printed)) == set(numbers(shown))
 
 

@@ -105,6 +105,7 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
         *surfaces.SURFACES,
         *noise_parameter_names(),
         *forward_models(),
+        *(option for model in forward_models().values() for option in model.options),
     }
     for block in SECTION_OF:
         known |= set(block.model_fields)
@@ -112,6 +113,8 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
         "by",
         "family",
         "fixed",
+        "same_as",
+        "times",
         "source",
         "models",
         "check",

@@ -58,6 +58,18 @@ def test_mutated_models_are_used_or_refused(name: str, tmp_path: Path, one_film_
                 break
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["forearm-glass", "forearm-glass-separate", "finger-null", "finger-water"])
+def test_mutated_models_are_fitted_or_refused(name: str, tmp_path: Path) -> None:
+    path, fitted = tmp_path / "mine.toml", 0
+    for seed in range(2000, 2020):
+        path.write_bytes(mutated(name, seed).encode("utf-8", "surrogatepass"))
+        message = refused("fit", str(path), "--max-steps", "100", "-o", str(tmp_path / str(seed)))
+        assert message is None or 0 < len(message) < 3000
+        fitted += message is None
+    assert fitted  # not all are refused
+
+
 @pytest.mark.parametrize("name", ["forearm-glass", "contact-area", "humid-air", "finger-null"])
 def test_mutated_models_are_read_or_refused(name: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
+from scipy.stats import multivariate_normal
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,63 @@ class UnitGaussian:
 
     def starts(self, rng, count):
         return self.shift + self.spread * rng.normal(size=(count, self.dimension))
+
+    def integrated_out(self, position, rng):
+        return {}
+
+
+@dataclass(frozen=True)
+class LinearGaussian:
+    """Data that are linear in parameters with standard normal priors, with unit noise: everything about it is known.
+
+    ``ridge`` is what the sum of the parameters is multiplied with in the first datum: large, it is known 1/ridge times as well
+    as the rest.
+    """
+
+    dimension: int = 3
+    ridge: float = 1.0
+
+    @cached_property
+    def design(self):
+        rest = np.random.default_rng(self.dimension).normal(size=(2, self.dimension)) / 2
+        return np.concatenate([np.full((1, self.dimension), self.ridge), rest])
+
+    @cached_property
+    def data(self):
+        return self.design @ np.linspace(-1.0, 1.5, self.dimension) + np.array([0.4, -1.1, 0.3])
+
+    @property
+    def names(self):
+        return tuple(f"x{index}" for index in range(self.dimension))
+
+    @property
+    def fingerprint(self):
+        return repr(self)
+
+    def moments(self):
+        """Mean and covariance of the posterior."""
+        covariance = np.linalg.inv(np.eye(self.dimension) + self.design.T @ self.design)
+        return covariance @ self.design.T @ self.data, covariance
+
+    def log_evidence(self):
+        covariance = np.eye(3) + self.design @ self.design.T
+        return multivariate_normal(np.zeros(3), covariance).logpdf(self.data)
+
+    def log_likelihood(self, position):
+        away = self.data - position @ self.design.T
+        return -0.5 * (away * away).sum(axis=1) - 1.5 * np.log(2.0 * np.pi)
+
+    def log_density(self, position):
+        return self.log_likelihood(position) - 0.5 * (position * position).sum(axis=1)
+
+    def prior_transform(self, unit):
+        return ndtri(unit)
+
+    def starts(self, rng, count):
+        return rng.normal(size=(count, self.dimension))
+
+    def integrated_out(self, position, rng):
+        return {}
 
 
 @dataclass(frozen=True)

@@ -138,7 +138,10 @@ def test_what_cannot_be_drawn_is_said(plot) -> None:
 
 
 def test_unknown_column_and_abscissa_are_said() -> None:
-    assert "no column groups them" in words(plot_levels(finger_fit(), "state"))
+    with pytest.raises(
+        InputError, match="'state' is no grouping column; these data can be drawn by person, liquid"
+    ):
+        plot_levels(finger_fit(), "state")
     with pytest.raises(
         InputError, match="no curve against 'time'; it has curves against speed_viscosity_product"
     ):

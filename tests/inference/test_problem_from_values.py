@@ -126,7 +126,7 @@ def test_settings_and_replaced_priors_are_in_the_file(tmp_path: Path) -> None:
 def test_liquids_groups_covariates_and_a_spectrum_from_values(tmp_path: Path) -> None:
     rng = np.random.default_rng(3)
     wavevector = np.geomspace(1e3, 1e8, 40)
-    spectrum = TabulatedSpectrum(wavevector, 1e-15 * (wavevector / 1e3) ** -3.5, 1.7)
+    spectrum = TabulatedSpectrum(wavevector, 1e-15 * (wavevector / 1e3) ** -3.5, scale=1.7)
     rates = np.geomspace(1e-2, 1e3, 8)
     columns = {
         "person": np.repeat(["A", "B", "C"], 4),

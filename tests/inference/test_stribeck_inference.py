@@ -171,7 +171,7 @@ def test_without_a_table(tmp_path: Path) -> None:
         ("", RHEOLOGY, ROWS.replace("liquid", "source"), FLOW, ("no column 'liquid'", "flow curve")),
         ("", RHEOLOGY, ROWS, FLOW.replace("thin,1,", "thin,100,"), ("thin", "shear_rate")),
         ("", RHEOLOGY, ROWS, FLOW.replace("shear_rate [1/s]", "sliding_speed [m/s]"), ("no column 'shear_rate'",)),
-        ("", RHEOLOGY.replace('"liquid"', '"fluid"'), ROWS, FLOW, ("rheology.by", "'fluid'")),
+        ("", RHEOLOGY.replace('"liquid"', '"fluid"'), ROWS, FLOW, ("no column 'fluid'", "liquid")),
         ("", RHEOLOGY.replace("file", "dataset"), ROWS, FLOW, ("rheology", "flow.csv")),
         ("", "", ROWS, FLOW, ("needs", "viscosity and sliding_speed")),
     ],

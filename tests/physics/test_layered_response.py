@@ -13,7 +13,7 @@ from skinbayes.contact import (
     effective_modulus,
     reduced_modulus,
     surface_response,
-    validate_skin,
+    validate_solid,
 )
 from skinbayes.errors import InputError
 
@@ -170,7 +170,7 @@ def test_shapes():
 def test_impossible_skin(bad, message):
     assert np.all(np.isnan(surface_response(skin_from(bad), [1e3, 1e5])))
     with pytest.raises(InputError, match=message):
-        validate_skin(skin_from(bad))
+        validate_solid(skin_from(bad))
 
 
 def test_reduced_modulus():

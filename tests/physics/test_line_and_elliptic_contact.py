@@ -7,8 +7,8 @@ from scipy.special import ellipe, ellipk
 
 from skinbayes.contact.elliptic_contact import cylinder_of_ellipse, ellipse_factors, elliptic_contact
 from skinbayes.contact.hertz import sphere_contact
-from skinbayes.contact.layered import reduced_modulus
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
+from skinbayes.contact.solid import reduced_modulus
 
 
 def test_line_pressure_carries_the_load_and_flattens_the_cylinder():

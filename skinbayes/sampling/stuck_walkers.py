@@ -44,7 +44,7 @@ def left_behind(log_density: FloatArray, dimension: int) -> NDArray[np.bool_]:
 
 
 def gathered(blocks: Sequence[Block], rounds: int, seed: int) -> list[EnsembleState]:
-    """States from which the ensembles go on after ``rounds`` blocks of steps: the ends of the last, stragglers taken along.
+    """States from which the ensembles go on after ``rounds`` blocks of steps: the ends of the last, stuck walkers taken along.
 
     A function of its arguments alone, so that a resumed run goes on as an uninterrupted one does.
     """

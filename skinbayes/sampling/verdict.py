@@ -1,54 +1,29 @@
-"""The verdict on a run in words: what is missing, why, and what to do about it."""
+"""The verdict on a run of ensembles in words: what is missing, why, and what to do about it."""
 
 from __future__ import annotations
 
 from math import ceil
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from skinbayes.problem import Problem
-    from skinbayes.sampling.causes import Cause
-    from skinbayes.sampling.chains import Chains
+from skinbayes.sampling.causes import Cause, cause, thinned
+from skinbayes.sampling.chains import Chains
+from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.progress import steps_needed
+from skinbayes.sampling.target import Target
 
 FEW = 4
 """Walkers apart that a ridge explains."""
 
 
-def verdict(problem: Problem, chains: Chains, steps_needed: int | None, seed: int) -> str:
-    """The sentence of the stopping rule; of a run that has not converged also the cause and the remedy.
-
-    Parameters
-    ----------
-    problem, chains : the problem and its run
-    steps_needed : steps in all that would be enough, None if that is unknown
-    seed : of the run
-    """
-    from skinbayes.sampling.causes import cause
-
+def verdict(chains: Chains, target: Target, options: SamplerOptions) -> str:
+    """The sentence of the stopping rule; of a run that has not converged also the cause and the remedy."""
     said = chains.report.sentence()
     if chains.converged:
         return said
-    found = cause(chains, _shared(problem, chains, seed))
-    return f"{said} {_because(found, chains)} {_remedy(found, chains.steps, steps_needed)}"
-
-
-def _shared(problem: Problem, chains: Chains, seed: int) -> dict[str, FloatArray]:
-    """Effects of each group, averaged over its levels, at the positions that causes are looked for in."""
-    from skinbayes.sampling.causes import thinned
-
-    groups = problem.groups
-    if groups is None:
-        return {}
-    theta = problem.target().transform.inverse(thinned(chains))
-    effects = problem.draw_effects(theta, np.random.default_rng([seed, 6]))
-    return {
-        f"the effect of {column}": effects[:, groups.effects_of(column)].mean(axis=1)
-        for column in groups.columns
-    }
+    shared = target.integrated_out(thinned(chains), np.random.default_rng([options.seed, 6]))
+    found = cause(chains, shared)
+    return f"{said} {_because(found, chains)} {_remedy(found, chains.steps, steps_needed(chains.report, options))}"
 
 
 def _because(found: Cause, chains: Chains) -> str:

@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
-from skinbayes.sampling.stragglers import LATEST_ROUND, left_behind
+from skinbayes.sampling.stuck_walkers import LATEST_ROUND, left_behind
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def test_pieces_and_cores_give_the_same_draws(chains, tmp_path) -> None:
     assert resumed.report.burn_in == chains.report.burn_in
 
 
-def test_without_stragglers_nothing_changes() -> None:
+def test_without_stuck_walkers_nothing_changes() -> None:
     run = run_ensembles(Pit(pit=False), SamplerOptions(seed=4, max_steps=400, ess=1e9))
     low = [left_behind(run.log_density[e, step], 3).any() for e in range(4) for step in range(99, 400, 100)]
     assert not any(low)
