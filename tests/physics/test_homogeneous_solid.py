@@ -15,6 +15,7 @@ from skinbayes.contact import (
     surface_response,
     twice_stress_variance,
 )
+from skinbayes.emulation import Box
 from skinbayes.errors import InputError
 from skinbayes.lubrication import build_film_table, tabulated_friction
 from skinbayes.roughness import SelfAffineSpectrum, named_surface, rms_slope
@@ -112,16 +113,23 @@ def test_tables_of_bridges() -> None:
         low, high = ({name: float(end(x)) for name, x in groups.items()} for end in (np.min, np.max))
         high["load"] = low["load"] + 0.1
         high["pull"] = low["pull"]
-        tables.append(bridge_table(low, high, depth=1e4))
+        tables.append(bridge_table(Box({name: (low[name], high[name]) for name in low}), depth=1e4))
     assert tables[0] is not None and tables[1] is not None
-    assert set(tables[0].counts) == {"load"}
-    assert tables[0].parts == pytest.approx(tables[1].parts, rel=1e-3, abs=1e-3)
+    assert set(tables[0].found.counts) == {"load"}
+    assert tables[0].found.parts == pytest.approx(tables[1].found.parts, rel=1e-3, abs=1e-3)
     humid = []
     for skin in (HomogeneousSolid(young_modulus=1e6), equal):
         groups = humid_groups(6830 * one, 1e-9 * one, height=height, skin=skin)
         low = {name: float(x[0]) for name, x in groups.items()}
         high = {**low, "load": low["load"] + 0.1, "gap": low["gap"] + 0.1}
-        humid.append(humid_table(low, high, spectrum=SURFACE, skin=skin, area_correction=gamma))
+        humid.append(
+            humid_table(
+                Box({name: (low[name], high[name]) for name in low}),
+                spectrum=SURFACE,
+                skin=skin,
+                area_correction=gamma,
+            )
+        )
     assert humid[0] is not None and humid[1] is not None
     assert humid[0].coefficients == pytest.approx(humid[1].coefficients, abs=1e-3)
 
