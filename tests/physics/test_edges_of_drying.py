@@ -5,52 +5,15 @@ from itertools import product
 
 import numpy as np
 import pytest
+from drying_skin import ANGLE, DRY, LOAD, SKIN, STRESS, SURFACE, YIELD, contact_of
 
 from skinbayes.contact import LayeredSkin, mean_separation, total_contact_area, twice_stress_variance
 from skinbayes.errors import InputError
-from skinbayes.roughness import SelfAffineSpectrum, named_surface
+from skinbayes.roughness import SelfAffineSpectrum
 from skinbayes.wetting import (
     capillary_state,
     drying_curve,
-    film_contact,
 )
-
-SURFACE, SKIN = (
-    named_surface("paper_reference"),
-    LayeredSkin(
-        young_modulus_layer=7e6,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    ),
-)
-LOAD, ANGLE, DRY, YIELD, STRESS = 6830.0, np.radians(80.0), 1e9, 50e6, 15e6
-NONE = np.empty(0)
-
-
-def contact_of(
-    load=LOAD,
-    surface=SURFACE,
-    skin=SKIN,
-    tension=0.0727,
-    angle=ANGLE,
-    other=0.0,
-    dry=DRY,
-    limit=YIELD,
-    **more,
-):
-    return film_contact(
-        load,
-        surface,
-        skin=skin,
-        surface_tension=tension,
-        contact_angle_skin=angle,
-        contact_angle_counterface=other,
-        young_modulus_layer_dry=dry,
-        yield_stress=limit,
-        **more,
-    )
 
 
 def area_of(load=LOAD, surface=SURFACE, skin=SKIN, limit=YIELD, gamma=0.42):
@@ -267,4 +230,4 @@ def test_impossible_parameters_leave_no_number():
         )
         assert all(np.isnan(part).all() for part in curve), changes
     with pytest.raises(InputError, match="closure is"):
-        contact_of(closure="sharp")
+        contact_of(closure="blunt")

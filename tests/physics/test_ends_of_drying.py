@@ -2,57 +2,18 @@
 
 import numpy as np
 import pytest
+from drying_skin import LOAD, NONE, STRESS, contact_of
 
 from skinbayes.contact import LayeredSkin
 from skinbayes.friction import friction_coefficient
-from skinbayes.roughness import named_surface
 from skinbayes.wetting import (
     FilmContact,
     drying_curve,
     drying_features,
     evaporation_rate,
     evaporation_rate_from_pressures,
-    film_contact,
     film_of_droplet,
 )
-
-SURFACE, SKIN = (
-    named_surface("paper_reference"),
-    LayeredSkin(
-        young_modulus_layer=7e6,
-        young_modulus_bulk=20e3,
-        poisson_ratio_layer=0.5,
-        poisson_ratio_bulk=0.5,
-        layer_thickness=20e-6,
-    ),
-)
-LOAD, ANGLE, DRY, YIELD, STRESS = 6830.0, np.radians(80.0), 1e9, 50e6, 15e6
-NONE = np.empty(0)
-
-
-def contact_of(
-    load=LOAD,
-    surface=SURFACE,
-    skin=SKIN,
-    tension=0.0727,
-    angle=ANGLE,
-    other=0.0,
-    dry=DRY,
-    limit=YIELD,
-    **more,
-):
-    return film_contact(
-        load,
-        surface,
-        skin=skin,
-        surface_tension=tension,
-        contact_angle_skin=angle,
-        contact_angle_counterface=other,
-        young_modulus_layer_dry=dry,
-        yield_stress=limit,
-        **more,
-    )
-
 
 CONTACT = FilmContact(
     film=np.array([1e-7, 4e-6, 1e-5]), area=np.array([8e-4, 1e-3, 6e-4]), dry_area=np.array(1e-4)
