@@ -264,5 +264,5 @@ def test_shapes_nan_and_messages():
     assert np.isnan(gaps.cumulative(-1e-6)).all()
     single = gap_distribution(7e3, named_surface("paper_reference"), skin=WET)
     assert np.ndim(single.mean) == np.ndim(single.cumulative(1e-6)) == 0
-    with pytest.raises(InputError, match="closure is 'exact', but must be one of 'gaussian', 'delta'"):
+    with pytest.raises(InputError, match="closure is 'exact', but must be one of 'gaussian', 'sharp'"):
         gap_distribution(7e3, named_surface("paper_reference"), skin=WET, closure="exact")
