@@ -119,7 +119,9 @@ def summed(parts: FloatArray, places: Sequence[FloatArray], vectors: int) -> Flo
             weights = np.ones((vectors, places[axes[0]].shape[1] if axes else 1, 1))
             for axis in axes:
                 outer = weights[..., None] * polynomials(places[axis], counts[axis])[..., None, :]
-                weights = outer.reshape(*weights.shape[:2], weights.shape[-1] * counts[axis])  # of an empty batch, too
+                weights = outer.reshape(
+                    *weights.shape[:2], weights.shape[-1] * counts[axis]
+                )  # of an empty batch, too
             size = weights.shape[-1]
             block = parts.reshape(size, -1) if axes is common else parts.reshape(vectors, size, columns)
             # contiguous also in a batch of one, whose strides say so anyway: the same product for both
