@@ -152,7 +152,7 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
         GOOD[: GOOD.index("[data]")] + GOOD[GOOD.index("[surface]") :], ("[data] is missing",),
     ),
     "required input missing": (
-        edited("young_modulus_bulk = \"20 kPa\"\n", ""), ("'friction' needs young_modulus_bulk",),
+        edited("young_modulus_bulk = \"20 kPa\"\n", ""), ("'friction' needs", "Not given: young_modulus_bulk"),
     ),
     "surface missing": (edited('[surface]\nname = "paper_reference"\n', ""), ("roughness is incomplete", "rms_height")),
     "future format": (edited("format = 1", "format = 2"), ("line 1", "format", "found 2")),

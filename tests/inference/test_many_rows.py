@@ -16,6 +16,7 @@ from skinbayes.errors import InputError
 from skinbayes.fit import sample, tree
 from skinbayes.fit.arviz_adapter import loo
 from skinbayes.fit.tree import posterior_groups, prior_groups
+from skinbayes.forward import alike_rows
 from skinbayes.forward.alike_rows import on_distinct, once_for_alike
 from skinbayes.problem import Problem, load_problem
 from skinbayes.problem.pieces import PIECE, in_pieces, named_in_pieces
@@ -107,7 +108,8 @@ def test_equal_rows_are_predicted_once(tmp_path: Path) -> None:
     assert set(asked) == {6}
 
 
-def test_columns_that_agree_in_the_first_vector_alone_are_told_apart() -> None:
+def test_columns_that_agree_in_the_first_vector_alone_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(alike_rows, "FEW", 0)  # so few are not told apart otherwise
     inputs = {"a": np.array([[1.0, 1.0, 1.0, 2.0], [3.0, 4.0, 3.0, 5.0]]), "b": np.array([[7.0]])}
     shapes: list[tuple[int, ...]] = []
 
