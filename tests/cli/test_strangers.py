@@ -85,7 +85,7 @@ def test_every_short_help_fits(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_costly_physics_is_checked_with_few_evaluations(monkeypatch: pytest.MonkeyPatch) -> None:
     """2,800 solutions took 30 s."""
-    problem, counts = load_problem("drying-glass-delta"), []
+    problem, counts = load_problem("drying-glass", settings={"closure": "sharp"}), []
     evaluate = Problem.evaluate
 
     def counted(self, inputs, *more, **named):
