@@ -83,7 +83,7 @@ def _show_model(name: str, as_json: bool) -> None:
     problem = load_problem(name)
     spec = problem.spec
     parameters: list[dict[str, Any]] = []
-    for parameter in (*problem.free, *problem.fixed, *problem.tied):
+    for parameter in problem.parameters:
         parameters.append(
             {
                 "name": parameter.label,

@@ -104,6 +104,7 @@ class Dataset:
         >>> data.columns["normal_force"].tolist(), data.labels("person")
         ([0.5, 0.48], ('A', 'B'))
         """
+        installed_forward_models()  # whose quantities the columns may be
         table = table_of_columns(columns, name)
         found, units = read_columns(table, missing=missing)
         made = cls(name, Path(name), found, units, None, "", lines=table.lines, in_memory=True)
@@ -329,9 +330,9 @@ def load_dataset(
     >>> data.labels("state"), data.columns["friction_coefficient"].tolist(), data.units["normal_force"]
     (('dry', 'wet'), [0.3, 1.4], 'N')
     """
-    installed_forward_models()  # whose quantities the columns may be
     if not isinstance(name_or_path, (str, Path)):
         return as_dataset(name_or_path, missing=missing)
+    installed_forward_models()  # whose quantities the columns may be
     key, path, described_in = find_dataset(name_or_path, relative_to=relative_to)
     provenance = None
     if described_in is not None:

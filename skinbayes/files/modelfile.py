@@ -76,6 +76,11 @@ class ModelSpec:
     conditions: dict[str, FloatArray] = field(default_factory=dict)
     yardsticks: tuple[str, ...] = ()
 
+    @property
+    def shipped(self) -> bool:
+        """Whether it is one of the models that come with skinbayes."""
+        return self.path.parent == shipped_folder("models")
+
 
 RETIRED = ("capillary-film", "drying", "drying-glass", "humid-air")
 """Models of which there was a second file for sharp gaps, called '…-delta'."""

@@ -211,7 +211,7 @@ def _quoted(key: str) -> str:
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
-    """Tables and values as the text of a TOML file.
+    """Tables and values as the text of a model file; what is empty is left out, but for the parameters, which none may lack.
 
     >>> print(toml_text({"title": "A ball", "parameters": {"yield_stress": {"fixed": "inf Pa"}}}), end="")
     title = "A ball"
@@ -221,7 +221,7 @@ def toml_text(content: Mapping[str, Any]) -> str:
     """
     import tomlkit
 
-    content = dict(content)
+    content = {key: value for key, value in content.items() if value not in ({}, []) or key == "parameters"}
     if "\n" in content.get("description", ""):
         content["description"] = tomlkit.string(f"\n{content['description']}\n", multiline=True)
     return tomlkit.dumps(content)

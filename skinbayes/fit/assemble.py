@@ -113,7 +113,7 @@ def _provenance(problem: Problem, package: str | None) -> dict[str, Any]:
         "format": FORMAT,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "model": problem.name,
-        "model_path": str(problem.spec.path) if not _is_shipped(problem) else problem.name,
+        "model_path": problem.name if problem.spec.shipped else str(problem.spec.path),
         "model_text": problem.spec.text,
         "title": problem.spec.title,
         "description": problem.spec.description,
@@ -131,12 +131,6 @@ def _provenance(problem: Problem, package: str | None) -> dict[str, Any]:
         "data": data,
         "versions": _versions(package),
     }
-
-
-def _is_shipped(problem: Problem) -> bool:
-    from skinbayes.files.locate import shipped_folder
-
-    return problem.spec.path.parent == shipped_folder("models")
 
 
 def _versions(package: str | None) -> dict[str, str]:

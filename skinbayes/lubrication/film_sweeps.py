@@ -18,7 +18,7 @@ from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw, asperity_table, law_of_table
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
-from skinbayes.lubrication.film_axes import film_parameters, range_logarithms
+from skinbayes.lubrication.film_axes import FilmAxes, film_axes, film_parameters, range_logarithms
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE = range(6)
@@ -68,6 +68,21 @@ class Surface:
         layer = max(named["young_modulus_layer"][0], bulk)
         skin = self.solid(layer, bulk, named["layer_thickness"][0])
         return float(np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self.rms_height))
+
+    def axes(
+        self,
+        ranges: Mapping[str, tuple[float, float]],
+        largest_strain: float,
+        counts: Mapping[str, int] | None = None,
+    ) -> FilmAxes:
+        """Axes of a table for some ranges of the parameters, SI, see `film_axes`."""
+        return film_axes(
+            ranges,
+            self.poisson_ratio_bulk,
+            largest_strain=largest_strain,
+            counts=counts,
+            stress_scale=self.stress_scale(ranges),
+        )
 
     def solid(self, layer: float, bulk: float, thickness: float) -> ElasticSolid:
         """The solid of given moduli, Pa, and thickness of the layer, m."""

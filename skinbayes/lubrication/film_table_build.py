@@ -14,7 +14,7 @@ from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.emulation import Kept, Progress, Tasks
 from skinbayes.emulation.chebyshev import grid_coefficients, summed, zeros
 from skinbayes.lubrication._uniform_spline import spline_coefficients
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_axes, film_scales
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_reference import smooth_films
 from skinbayes.lubrication.film_sweeps import Ball, Material, Surface, ball_at
@@ -107,13 +107,7 @@ def build_film_table(
     surface = Surface(
         spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction, "young_modulus" in ranges
     )
-    axes = film_axes(
-        ranges,
-        poisson_ratio_bulk,
-        largest_strain=largest_strain,
-        counts=counts,
-        stress_scale=surface.stress_scale(ranges),
-    )
+    axes = surface.axes(ranges, largest_strain, counts)
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
     sweeps = len(places) + len(coarse_places) + checked

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS, film_axes
+from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS
 from skinbayes.lubrication.film_sweeps import Surface
 from skinbayes.lubrication.film_table import VERSION
 from skinbayes.lubrication.film_table_build import CHECKED, SPEEDS, TABLE_NODES
@@ -73,13 +73,7 @@ def film_table_key(
     surface = Surface(
         spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction, "young_modulus" in ranges
     )
-    axes = film_axes(
-        ranges,
-        poisson_ratio_bulk,
-        largest_strain=largest_strain,
-        counts=counts,
-        stress_scale=surface.stress_scale(ranges),
-    )
+    axes = surface.axes(ranges, largest_strain, counts)
     known = [name for name in (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1]) if name in ranges]
     ends = float(spectrum.wavevector_min), float(spectrum.wavevector_max)
     power = spectrum.power(np.geomspace(*ends, _PLACES)) / surface.rms_height**2

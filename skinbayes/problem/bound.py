@@ -76,6 +76,11 @@ class BoundModel:
         return tuple(parameter.label for parameter in self.free)
 
     @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """All parameters: free, fixed, and tied to others."""
+        return (*self.free, *self.fixed, *self.tied)
+
+    @property
     def dimension(self) -> int:
         """Number of free parameters D."""
         return len(self.free)

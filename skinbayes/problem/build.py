@@ -144,9 +144,6 @@ def build_problem(
         key: {"values": [written_value(v, _unit(key), f"{name}: conditions.{key}") for v in np.atleast_1d(values).tolist()]}
         for key, values in (conditions or {}).items()
     }  # fmt: skip
-    content = {key: value for key, value in content.items() if value != {}} | {
-        "parameters": content["parameters"]
-    }
     spec = replace(read_model(content, Path(name), ""), text=toml_text(content))
     dataset = None if dataset is None else selected_dataset(spec, dataset)
     spectrum = surface if isinstance(surface, TabulatedSpectrum) else None

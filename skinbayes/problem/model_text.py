@@ -58,15 +58,14 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
         }
     elif spec.surface_name is not None:
         content["surface"] = {"name": spec.surface_name}
-    named = {p.name for p in (*problem.free, *problem.fixed, *problem.tied)}
-    own = [
-        p for p in (*problem.free, *problem.fixed, *problem.tied) if p.name in problem.forward.input_names()
-    ]
-    content["parameters"] = _by_level(spec.path, (p for p in own if p.entry is not None))
+    named = {p.name for p in problem.parameters}
+    inputs = problem.forward.input_names()
+    written = (p for p in problem.parameters if p.name in inputs and p.entry is not None)
+    content["parameters"] = _by_level(spec.path, written)
     if spec.noise:
         content["noise"] = _noise(problem)
     if spec.groups:
-        scales = [p for p in (*problem.free, *problem.fixed) if p.name == "group_scale"]
+        scales = [p for p in problem.parameters if p.name == "group_scale"]
         content["groups"] = {str(p.level): {"scale": _entry(spec.path, p)} for p in scales}
     if spec.covariates:
         content["covariates"] = {
@@ -76,7 +75,7 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
                 "reference": written_value(c.reference, QUANTITIES[c.column].unit, c.name),
                 "exponent": next(
                     _entry(spec.path, p)
-                    for p in (*problem.free, *problem.fixed)
+                    for p in problem.parameters
                     if p.name == "covariate_exponent" and p.level == c.name
                 ),
             }
@@ -96,9 +95,6 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
         if key not in named
     }
     content["yardsticks"] = [_located(Path(y), path) if y.endswith(".toml") else y for y in spec.yardsticks]
-    content = {key: value for key, value in content.items() if value not in ({}, [])} | {
-        "parameters": content["parameters"]
-    }
     return {path: toml_text(content), **files}
 
 
@@ -158,7 +154,7 @@ def _located(file: Path | None, path: Path) -> str | None:
 
 def _noise(problem: BoundModel) -> dict[str, Any]:
     spec, names = problem.spec, noise_parameter_names()
-    found = [p for p in (*problem.free, *problem.fixed) if p.name in names]
+    found = [p for p in problem.parameters if p.name in names]
     if len(spec.observables) == 1:
         return {"family": spec.noise[spec.observables[0]], **_by_level(spec.path, found)}
     return {

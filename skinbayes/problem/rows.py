@@ -9,7 +9,6 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset, as_dataset, find_dataset
-from skinbayes.files.locate import shipped_folder
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import RESERVED_NAMES
 from skinbayes.forward import ForwardModel
@@ -241,7 +240,7 @@ def _spread_column(dataset: Dataset, name: str) -> str:
 def _ways_out(spec: ModelSpec, dataset: Dataset, key: str, column: str) -> str:
     """What to do about a spread that the model file uses and the data do not have."""
     where = "the model file"
-    if spec.path.parent == shipped_folder("models"):
+    if spec.shipped:
         copy = f"'skinbayes new {spec.name} --data {dataset.path.name} -o mine.toml'"
         where = f"a copy of the model, such as {copy} writes for these data"
     return f'Either add {column}, or, if it is not known, write {key} = "ignore" under [data] of {where}'

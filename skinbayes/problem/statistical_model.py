@@ -27,7 +27,7 @@ class StatisticalModel(BoundModel):
     def fingerprint(self) -> str:
         """Digest of everything the posterior depends on; a run is only continued where it is the same."""
         return digest_model(
-            self.spec, self.forward, (*self.free, *self.fixed, *self.tied), self.conditions, self.observations, self.input_spread,
+            self.spec, self.forward, self.parameters, self.conditions, self.observations, self.input_spread,
             self.groups, self.tables, self.data_fingerprint,
         )  # fmt: skip
 
