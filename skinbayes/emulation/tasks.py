@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import threading
 import time
@@ -11,7 +12,6 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from multiprocessing import connection, get_context, parent_process
-from pickle import PicklingError
 from typing import Any, Protocol
 
 import numpy as np
@@ -25,7 +25,7 @@ Progress = Callable[[int, int], None]
 """Told how many of how many steps are done."""
 
 
-_UNSHARED = (BrokenProcessPool, PicklingError, AttributeError, TypeError)
+_UNSHARED = (BrokenProcessPool, pickle.PicklingError, AttributeError, TypeError)
 """A process was ended from outside, perhaps for want of memory, or cannot be given the function: go on without."""
 
 
@@ -102,8 +102,10 @@ class Tasks:
 
     def _results(self, function: Callable[[Any], Any], todo: list[Any]) -> Iterator[Any]:
         done = 0
-        if self._pool is not None:
+        if self._pool is not None and todo:
             try:
+                # here, not in the pool: its queue can wait for ever once it met what it cannot send
+                pickle.dumps((function, todo[0]))
                 for found in self._pool.map(function, todo, chunksize=4):
                     yield found
                     done += 1
