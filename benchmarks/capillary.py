@@ -68,7 +68,7 @@ class Case:
 
     def baseline(self) -> np.ndarray:
         """A/A0 by fixed-point iteration over Kelvin lengths and interpolation, shape ``(64, 24)``."""
-        pull = TENSION * (np.cos(SKIN_ANGLE) + np.cos(self.glass))[:, None]
+        wetting_tension = TENSION * (np.cos(SKIN_ANGLE) + np.cos(self.glass))[:, None]
         # equal steps of ln(1 + d0/d), from the flooded gap downwards
         gap = 3 * self.flooded / np.expm1(np.linspace(1e-3, np.log(1 + 3 / 0.2), BASELINE_GAPS))
         load = self.load[:, None]
@@ -76,7 +76,7 @@ class Case:
         while True:
             gaps = gap_distribution(pressure, self.surface, skin=self.skin)
             wet = gaps.cumulative(gap[..., None])[..., 0] - gaps.contact_fraction
-            following = load + pull / gap * wet
+            following = load + wetting_tension / gap * wet
             done = np.max(np.abs(following / pressure - 1)) < BASELINE_TOLERANCE
             pressure = following
             if done:

@@ -4,7 +4,7 @@
 
 All sample the same two targets in five dimensions: a Gaussian of correlated coordinates and a Student t with
 four degrees of freedom. The stretch move runs as a script would use it (32 walkers, density vectorised), the
-default moves with 128 walkers, the moves of costly targets with 64. All start from the target, run for about the
+default moves with 128 walkers, the moves of expensive targets with 64. All start from the target, run for about the
 same time, and are judged by the same estimate of the effective sample size, the smallest over coordinates. CPU
 seconds include everything between the first and the last step.
 """

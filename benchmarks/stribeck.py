@@ -155,7 +155,7 @@ def fast_curve(products: np.ndarray, nodes: int) -> np.ndarray:
         asperities=asperity_law(surface, skin),
         nodes=nodes,
     )
-    return BOUNDARY_FRICTION * films.asperity_load_share + films.couette + films.pressure_flow
+    return BOUNDARY_FRICTION * films.asperity_load_fraction + films.couette + films.pressure_flow
 
 
 def case() -> tuple[float, float, float, LayeredSkin, PowerSpectrum]:

@@ -53,6 +53,8 @@ _SYNONYMS = {
     "counterface": "material counter_surface countersurface counterbody counter_body probe_material substrate slider",
     "state": "condition skin_state skin_condition wetness hydration_state",
     "source": "reference ref study paper",
+    "plastic_fraction": "plastic_share",
+    "asperity_load_fraction": "asperity_load_share load_share",
 }  # fmt: skip
 """Name to what people write for it, in small letters with underscores."""
 
@@ -115,25 +117,25 @@ def likely_meant(
     [('sphere_radius', 'half of the diameter: halve the values')]
     """
     plain = plain_name(name[:80])
-    alike = {plain_name(one): one for one in known}
-    found = _called(name.strip(), plain, alike, known, symbols)
+    plain_names = {plain_name(one): one for one in known}
+    found = _called(name.strip(), plain, plain_names, known, symbols)
     if not found:
-        found = _spread_of(plain, alike, known, symbols, spreads)
+        found = _spread_of(plain, plain_names, known, symbols, spreads)
     if not found and near and len(plain) > 2:
-        close = get_close_matches(plain, list(alike), n=2, cutoff=_CUTOFF)
+        close = get_close_matches(plain, list(plain_names), n=2, cutoff=_CUTOFF)
         words = set(plain.split("_"))
-        parts = [one for one in alike if len(plain) > 3 and words <= set(one.split("_"))]
-        found = [(alike[one], "") for one in (close or (parts if len(parts) <= 2 else []))]
+        parts = [one for one in plain_names if len(plain) > 3 and words <= set(one.split("_"))]
+        found = [(plain_names[one], "") for one in (close or (parts if len(parts) <= 2 else []))]
     return found
 
 
 def _called(
-    name: str, plain: str, alike: dict[str, str], known: Collection[str], symbols: dict[str, str]
+    name: str, plain: str, plain_names: dict[str, str], known: Collection[str], symbols: dict[str, str]
 ) -> list[tuple[str, str]]:
     """The known names that this is: written otherwise, as a symbol, or by a synonym."""
-    if plain in alike:
-        return [(alike[plain], "")]
-    bare = {re.sub("[^a-z0-9]", "", one): written for one, written in alike.items()}
+    if plain in plain_names:
+        return [(plain_names[plain], "")]
+    bare = {re.sub("[^a-z0-9]", "", one): written for one, written in plain_names.items()}
     if len(plain) > 3 and (joined := re.sub("[^a-z0-9]", "", plain)) in bare:
         return [(bare[joined], "")]
     symbol = unicodedata.normalize("NFKC", name)
@@ -149,7 +151,7 @@ def _called(
 
 def _spread_of(
     plain: str,
-    alike: dict[str, str],
+    plain_names: dict[str, str],
     known: Collection[str],
     symbols: dict[str, str],
     spreads: tuple[str, str],
@@ -161,6 +163,6 @@ def _spread_of(
     base, spread = split["base"], spreads[split["after"] in _ERRORS]
     return [
         (one + spread, "")
-        for one, why in _called(base, base, alike, known, symbols)
+        for one, why in _called(base, base, plain_names, known, symbols)
         if not why and not one.endswith(spreads)
     ]

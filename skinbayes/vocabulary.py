@@ -98,7 +98,7 @@ _ALL = (
     _closed("relative_contact_area", "A/A0", "1", "area of real contact over nominal area", 1.0),
     _closed("relative_contact_area_elastic", "A_el/A0", "1", "elastic part of the contact area", 1.0),
     _closed("relative_contact_area_plastic", "A_pl/A0", "1", "plastic part of the contact area", 1.0),
-    _closed("plastic_share", "A_pl/A", "1", "share of the contact area that has yielded", 1.0),
+    _closed("plastic_fraction", "A_pl/A", "1", "fraction of the contact area that has yielded", 1.0),
     Quantity("surface_response", "S", "1", "layered response factor: S(0) = E0*/E1*, S(∞) = 1"),
     Quantity("effective_modulus", "E_eff", "Pa", "plane-strain modulus felt by one wavevector, E0*/S"),
     Quantity(
@@ -148,7 +148,7 @@ _ALL = (
     Quantity(
         "friction_coefficient_pressure_flow", "μ_p", "1", "part of the friction made by pressure flow", -inf
     ),
-    _closed("asperity_load_share", "φ_a", "1", "share of the load that asperities carry", 1.0),
+    _closed("asperity_load_fraction", "φ_a", "1", "fraction of the load that asperities carry", 1.0),
     _closed("minimum_film_thickness", "u_min", "m", "smallest mean separation of lubricated surfaces"),
     _closed("central_film_thickness", "u_c", "m", "mean separation under the middle of the ball"),
     # descriptions of friction without a theory
@@ -185,7 +185,7 @@ _ALL = (
         infinite_allowed=True,
     ),
     Quantity("kelvin_gap", "d_K", "m", "largest gap that a capillary bridge spans"),
-    _closed("capillary_pressure", "p_a", "Pa", "pull of the capillary bridges over nominal contact area"),
+    _closed("capillary_pressure", "p_a", "Pa", "force of the capillary bridges over nominal contact area"),
     _closed("wet_area", "A_wet/A0", "1", "area between the surfaces that is wet over nominal area", 1.0),
     _closed("mean_separation_wet", "ū_wet", "m", "mean interfacial separation in the wet area"),
     _closed("droplet_volume", "ΔV", "m^3", "volume of the droplet that wets the track"),

@@ -12,7 +12,7 @@ from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     from skinbayes.files.provenance import Provenance
-    from skinbayes.files.table import Table
+    from skinbayes.files.table import CsvTable
 
 
 @click.command()
@@ -170,7 +170,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
     print_table(headers, rows)
 
 
-def _read(name: str) -> tuple[Provenance | None, Table]:
+def _read(name: str) -> tuple[Provenance | None, CsvTable]:
     from skinbayes.files.dataset import find_dataset
     from skinbayes.files.provenance import load_provenance
     from skinbayes.files.table import read_table

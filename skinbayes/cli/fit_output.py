@@ -52,7 +52,7 @@ def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
 
 def _convergence(result: Fit) -> dict[str, tuple[str, Callable[[float], str]]]:
     """Headers of the diagnostics of parameters that the engine has, with their name and how they are written."""
-    from skinbayes.report.words import sample_size
+    from skinbayes.phrases import sample_size
 
     known = {"ESS": ("ess_bulk", sample_size), "R-hat": ("r_hat", "{:.3f}".format)}
     return {header: entry for header, entry in known.items() if entry[0] in result.provenance["sampling"]}

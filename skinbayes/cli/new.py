@@ -32,7 +32,7 @@ def new(model: str, output: str, data: str | None, overwrite: bool, as_json: boo
     write_text(target, copy.text)
     try:
         spec = load_model(target)
-    except InputError:  # such as a file called as one of its yardsticks
+    except InputError:  # such as a file called as one of its baseline models
         target.unlink() if before is None else write_atomically(target, before)
         raise
     if as_json:

@@ -1,4 +1,4 @@
-"""Write the page of a run, with the yardsticks that its model names."""
+"""Write the page of a run, with the baseline models that its model names."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
-    from skinbayes.comparison import Yardsticks
+    from skinbayes.comparison import AgainstBaselines
     from skinbayes.fit import Fit
 
 
@@ -30,34 +30,36 @@ def refuse_other_files(page: Path) -> None:
         raise InputError(f"{page}: exists already and is no page of skinbayes; choose another name")
 
 
-def write_page(fit: Fit, page: Path, run: Path | None, with_yardsticks: bool = True) -> Yardsticks | None:
+def write_page(
+    fit: Fit, page: Path, run: Path | None, with_baselines: bool = True
+) -> AgainstBaselines | None:
     """Write the page of a fit; models without theory that its model file names are fitted before, unless that was done.
 
     Parameters
     ----------
     fit : the fit
     page : the file to write
-    run : the run directory, in which the fits of yardsticks are kept; None keeps nothing
-    with_yardsticks : False leaves them out
+    run : the run directory, in which the fits of baseline models are kept; None keeps nothing
+    with_baselines : False leaves them out
 
     Returns
     -------
-    Yardsticks or None
-        The fit beside its yardsticks, if it has any
+    Baseline models or None
+        The fit beside its baseline models, if it has any
 
     Raises
     ------
     InputError
         Something else stands under the name of the page.
     """
-    from skinbayes.cli.progress import yardstick_progress
-    from skinbayes.comparison import against_yardsticks
+    from skinbayes.cli.progress import baseline_progress
+    from skinbayes.comparison import against_baselines
     from skinbayes.report import write_report
 
     refuse_other_files(page)
-    yardsticks = None
-    if with_yardsticks and fit.problem is not None and fit.problem.spec.yardsticks:
-        with yardstick_progress() as progress:
-            yardsticks = against_yardsticks(fit, run, progress)
-    write_report(fit, page, yardsticks)
-    return yardsticks
+    baseline_models = None
+    if with_baselines and fit.problem is not None and fit.problem.spec.baseline_models:
+        with baseline_progress() as progress:
+            baseline_models = against_baselines(fit, run, progress)
+    write_report(fit, page, baseline_models)
+    return baseline_models

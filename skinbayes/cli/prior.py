@@ -40,7 +40,7 @@ def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) ->
             (
                 row.label,
                 *(format_quantity(v, unit) for v in (row.observed, row.q05, row.median, row.q95)),
-                f"{100 * row.share_below:.0f} %",
+                f"{100 * row.fraction_below:.0f} %",
             )
             for row in shown
             if row.observable == observable

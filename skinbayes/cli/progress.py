@@ -88,16 +88,16 @@ def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[RunPr
 
 
 @contextmanager
-def yardstick_progress() -> Iterator[Callable[[str, RunProgress], None]]:
-    """Yield what to call with the name of a yardstick after every block of its steps."""
+def baseline_progress() -> Iterator[Callable[[str, RunProgress], None]]:
+    """Yield what to call with the name of a baseline model after every block of its steps."""
     with ExitStack() as shown:
         current: dict[str, Callable[[RunProgress], None]] = {}
 
         def update(name: str, progress: RunProgress) -> None:
             if name not in current:
-                # the bar of the yardstick before makes way
+                # the bar of the baseline model before makes way
                 shown.close()
-                current[name] = shown.enter_context(sampling_progress(f"yardstick {name}"))
+                current[name] = shown.enter_context(sampling_progress(f"baseline model {name}"))
             current[name](progress)
 
         yield update

@@ -15,12 +15,12 @@ from skinbayes.cli.output import json_option, print_json, say
     "-o", "--output", metavar="FILE.html", help="Where to write the page.  [default: RUN/report.html]"
 )
 @click.option(
-    "--no-yardsticks",
+    "--no-baselines",
     is_flag=True,
     help="Do not fit the models without theory that the model names beside it.",
 )
 @json_option
-def report(run: str, output: str | None, no_yardsticks: bool, as_json: bool) -> None:
+def report(run: str, output: str | None, no_baselines: bool, as_json: bool) -> None:
     """Write one HTML page: what was learnt and what was not.
 
     The page is one file that needs no other, figures included.
@@ -31,7 +31,7 @@ def report(run: str, output: str | None, no_yardsticks: bool, as_json: bool) -> 
 
     fit, place = load_fit(run), Path(run)
     page = Path(output) if output else place / "report.html" if place.is_dir() else place.with_suffix(".html")
-    yardsticks = write_page(fit, page, place if place.is_dir() else None, not no_yardsticks)
+    baseline_models = write_page(fit, page, place if place.is_dir() else None, not no_baselines)
     if as_json:
         print_json(
             {
@@ -39,7 +39,7 @@ def report(run: str, output: str | None, no_yardsticks: bool, as_json: bool) -> 
                 "report": str(page),
                 "converged": fit.converged,
                 **digest(fit),
-                "yardsticks": None if yardsticks is None else yardsticks.to_dict(),
+                "baseline_models": None if baseline_models is None else baseline_models.to_dict(),
             }
         )
     else:

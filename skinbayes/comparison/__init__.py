@@ -1,11 +1,23 @@
-"""Comparing models on the same data, by what they predict for data left out, and against yardsticks without theory."""
+"""Comparing models on the same data, by what they predict for data left out, and against baseline models without theory."""
 
+from skinbayes.comparison.baselines import against_baselines
 from skinbayes.comparison.models import ComparedModel, Comparison, compare
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
+from skinbayes.comparison.ranking import AgainstBaselines, RankedAgainst
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut, LeftOutLevel
-from skinbayes.comparison.standings import Standing, Yardsticks
 from skinbayes.comparison.weights import stacking_weights
-from skinbayes.comparison.yardsticks import against_yardsticks
 
-__all__ = ["FEW_ROWS", "ComparedModel", "Comparison", "LeftOut", "LeftOutLevel", "NoiseFloor", "Standing", "Yardsticks",
-           "against_yardsticks", "compare", "noise_floor", "stacking_weights"]  # fmt: skip
+__all__ = [
+           "FEW_ROWS",
+           "AgainstBaselines",
+           "ComparedModel",
+           "Comparison",
+           "LeftOut",
+           "LeftOutLevel",
+           "NoiseFloor",
+           "RankedAgainst",
+           "against_baselines",
+           "compare",
+           "noise_floor",
+           "stacking_weights",
+]  # fmt: skip

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from skinbayes.comparison.scores import FEW_ROWS, LeftOut, Progress, Scores, difference, score
-from skinbayes.comparison.weights import stacking_weights
-from skinbayes.comparison.words import (
+from skinbayes.comparison.scores import FEW_ROWS, LeftOut, RefitProgress, Scores, difference, score
+from skinbayes.comparison.verdicts import (
     few_levels,
     level_question,
     pointwise_question,
     sign_of,
     unreliable_levels,
 )
+from skinbayes.comparison.weights import stacking_weights
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ class Comparison:
         }
 
 
-def compare(fits: Sequence[Fit], refit: bool = False, progress: Progress | None = None) -> Comparison:
+def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | None = None) -> Comparison:
     """Compare fits by what they predict for data left out.
 
     Single data by Pareto-smoothed importance-sampling leave-one-out cross-validation, Vehtari, Gelman & Gabry 2017,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from skinbayes.comparison.words import plural
+from skinbayes.phrases import plural
 from skinbayes.statistics.two_way import crossed_analysis_of_variance
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ FEW_ROWS = 10
 LARGEST_REFIT_ERROR = 0.2
 """A refit whose ln density is uncertain by more than this is not reliable either."""
 
-Progress = Callable[[int, int], None]
+RefitProgress = Callable[[int, int], None]
 """Called with the number of refits done and their total."""
 
 _LEFT_OUT = "log_likelihood_left_out"
@@ -128,7 +128,7 @@ def grouping_columns(fit: Fit) -> tuple[str, ...]:
     return tuple(str(name) for name in fit.groups[_LEFT_OUT].data_vars) if _LEFT_OUT in fit.groups else ()
 
 
-def score(fit: Fit, refit: bool = False, progress: Progress | None = None) -> Scores:
+def score(fit: Fit, refit: bool = False, progress: RefitProgress | None = None) -> Scores:
     """Score a fit by Pareto-smoothed importance sampling, and by refits where that fails if asked to.
 
     Parameters

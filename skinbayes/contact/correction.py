@@ -113,15 +113,15 @@ def corrected_twice_stress_variance(
         if gamma.size == 1:
             value = float(gamma.reshape(-1)[0])
             shape = np.broadcast_shapes(ratio.shape, gamma.shape)
-            share = _share_of_one(ratio.reshape(-1), value).reshape(shape)
+            fraction = _fraction_of_one(ratio.reshape(-1), value).reshape(shape)
         else:
             ratio, gamma = np.broadcast_arrays(ratio, gamma)
             distinct, member = np.unique(gamma.reshape(-1), return_inverse=True)
-            share = _share_of_many(ratio.reshape(-1), distinct, member).reshape(ratio.shape)
-        return np.asarray(width * share)[()]
+            fraction = _fraction_of_many(ratio.reshape(-1), distinct, member).reshape(ratio.shape)
+        return np.asarray(width * fraction)[()]
 
 
-def _share_of_one(ratio: FloatArray, gamma: float) -> FloatArray:
+def _fraction_of_one(ratio: FloatArray, gamma: float) -> FloatArray:
     """V_eff/V for ``ratio`` = V/p0² of shape ``(M,)`` and one γ."""
     if not 0 < gamma <= 1:
         return np.full(ratio.shape, np.nan)
@@ -135,7 +135,7 @@ def _share_of_one(ratio: FloatArray, gamma: float) -> FloatArray:
     return _interpolate(log_ratio, cell, *ends)
 
 
-def _share_of_many(ratio: FloatArray, distinct: FloatArray, member: IndexArray) -> FloatArray:
+def _fraction_of_many(ratio: FloatArray, distinct: FloatArray, member: IndexArray) -> FloatArray:
     """The same, bit for bit, where element i has the γ ``distinct[member[i]]``."""
     log_phi, slope = _table(distinct)
     first, last = log_phi[member, 0], log_phi[member, -1]
@@ -143,10 +143,10 @@ def _share_of_many(ratio: FloatArray, distinct: FloatArray, member: IndexArray) 
     cell = np.count_nonzero(log_phi[member] <= log_ratio[:, None], axis=-1) - 1
     cell = np.clip(cell, 0, _KNOTS.size - 2)
     ends = log_phi[member, cell], log_phi[member, cell + 1], slope[member, cell], slope[member, cell + 1]
-    share = _interpolate(log_ratio, cell, *ends)
+    fraction = _interpolate(log_ratio, cell, *ends)
     gamma = distinct[member]
-    share = np.where(gamma == 1, np.where(np.isnan(ratio), np.nan, 1.0), share)
-    return np.where((gamma > 0) & (gamma <= 1), share, np.nan)
+    fraction = np.where(gamma == 1, np.where(np.isnan(ratio), np.nan, 1.0), fraction)
+    return np.where((gamma > 0) & (gamma <= 1), fraction, np.nan)
 
 
 def _interpolate(

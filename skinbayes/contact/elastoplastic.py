@@ -43,7 +43,7 @@ class ContactArea(NamedTuple):
         return self.elastic + self.plastic
 
     @property
-    def plastic_share(self) -> FloatArray:
+    def plastic_fraction(self) -> FloatArray:
         """A_pl/(A_el + A_pl), dimensionless; nan where there is no contact."""
         with np.errstate(all="ignore"):
             return np.asarray(self.plastic / self.total)[()]
@@ -92,7 +92,7 @@ def elastoplastic_contact_area(
     Examples
     --------
     >>> dry = elastoplastic_contact_area(6830.0, 6.87e18, yield_stress=50e6)
-    >>> print(f"{dry.total:.4e} {dry.plastic_share:.4f}")
+    >>> print(f"{dry.total:.4e} {dry.plastic_fraction:.4f}")
     1.3660e-04 1.0000
     """
     ratio, spread, reach, shape = _dimensionless(

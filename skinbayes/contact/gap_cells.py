@@ -77,14 +77,14 @@ def _pairs(cells: int) -> _Pairs:
     return _Pairs(node, edges[cell], cell, start)
 
 
-def _shares(cells: int) -> FloatArray:
+def _fractions(cells: int) -> FloatArray:
     """Places of the nodes between the ends of a part of the band: crowded at both ends, less so at the upper one."""
     place = np.arange(1, 2 * cells) / (2 * cells)
     lower = 1 - np.square(place) * 1.1 / (place + 0.1)
     return 1 - np.square(lower) * 1.5 / (lower + 0.5)
 
 
-_PLACES = Places(_shares(_PLATEAU), _shares(_FRACTAL), _shares(_WHOLE))
+_PLACES = Places(_fractions(_PLATEAU), _fractions(_FRACTAL), _fractions(_WHOLE))
 
 
 def resolve_gaps(
@@ -185,6 +185,6 @@ def _mean_square_above(spectrum: PowerSpectrum, q: FloatArray) -> FloatArray:
     left, right = density[..., :-1], density[..., 1:]
     # places of a part without length are not ascending to the last bit
     steps = np.maximum(np.diff(log_q), 0.0)
-    shares = 2 * np.pi * left * steps * exprel(np.log(right / left))
-    above = join(np.cumsum(shares[..., ::-1], axis=-1)[..., ::-1], np.zeros(1))
+    fractions = 2 * np.pi * left * steps * exprel(np.log(right / left))
+    above = join(np.cumsum(fractions[..., ::-1], axis=-1)[..., ::-1], np.zeros(1))
     return above if not own.size else np.take(above, np.searchsorted(points, q), axis=-1)

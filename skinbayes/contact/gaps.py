@@ -40,7 +40,7 @@ class GapDistribution:
     mean : ū, m, the value of `mean_separation`, shape ``S``
     contact_fraction : A/A0, dimensionless, shape ``S``
     location, width : m, shape ``S + (n,)``
-    weight : share of the nominal area, dimensionless, shape ``S + (n,)``; sums to 1 − A/A0
+    weight : fraction of the nominal area, dimensionless, shape ``S + (n,)``; sums to 1 − A/A0
 
     References
     ----------
@@ -71,9 +71,9 @@ class GapDistribution:
 
         Returns
         -------
-        share : dimensionless, shape ``S``, plus the axis of ``gap`` if it has one; nan for a negative gap
+        fraction : dimensionless, shape ``S``, plus the axis of ``gap`` if it has one; nan for a negative gap
         """
-        return self._over(gap, _share) + with_axes(self.contact_fraction, min(np.ndim(gap), 1))
+        return self._over(gap, _fraction) + with_axes(self.contact_fraction, min(np.ndim(gap), 1))
 
     def film(self, gap: ArrayLike) -> FloatArray:
         """Volume per nominal area between the surfaces where the gap is at most d, ``∫_0^d u P(u) du``.
@@ -103,7 +103,7 @@ class GapDistribution:
             d = inf; nan for a gap that is not positive
         """
         with np.errstate(all="ignore"):
-            return np.asarray(self.film(gap) / self._over(gap, _share))[()]
+            return np.asarray(self.film(gap) / self._over(gap, _fraction))[()]
 
     def _over(self, gap: ArrayLike, part: Callable[..., FloatArray]) -> FloatArray:
         """Σ weight · ``part`` at each gap."""
@@ -122,8 +122,8 @@ class GapDistribution:
             return total.reshape(*batch, gaps.shape[-1]) if found.ndim else total.reshape(batch)[()]
 
 
-def _share(gap: FloatArray, location: FloatArray, spread: FloatArray) -> FloatArray:
-    """Share of a folded Gaussian below ``gap``; spread is √2 times the standard deviation."""
+def _fraction(gap: FloatArray, location: FloatArray, spread: FloatArray) -> FloatArray:
+    """Fraction of a folded Gaussian below ``gap``; spread is √2 times the standard deviation."""
     return (erf((gap - location) / spread) + erf((gap + location) / spread)) / 2
 
 
@@ -145,7 +145,7 @@ def gap_distribution(
 ) -> GapDistribution:
     """Distribution of the gap of rough layered skin pressed against a smooth solid (Sect. 5 of the paper).
 
-    As the magnification ζ grows, area that looked like contact opens: between ζ and ζ + dζ the share −A′(ζ)dζ. Its mean
+    As the magnification ζ grows, area that looked like contact opens: between ζ and ζ + dζ the fraction −A′(ζ)dζ. Its mean
     gap follows from the separation of what still touches, ``u₁ = d(A ū)/dA``, taken as Δ(A ū)/ΔA between
     nodes. ū(ζ) is `mean_separation` under the pressure p/A(ζ) with twice the stress variance, V(q) − V(ζ) of what is
     smaller. About u₁ the gap scatters with the roughness above ζ, so that
@@ -178,7 +178,7 @@ def gap_distribution(
     At small ζ, where A ≈ 1, u₁ has no meaning: Δ(A ū) falls slower than ΔA. There u₁ bends smoothly towards
     2.5 ū, with which 2 or 3.5 agree within 0.003 in F.
 
-    F(d) of 40 cells is within 5e-4 (median) and 6e-3 (all of 180 random states of skin) of that of 150 cells; the share
+    F(d) of 40 cells is within 5e-4 (median) and 6e-3 (all of 180 random states of skin) of that of 150 cells; the fraction
     out of contact below d = ū/100 within 4 %. The delta form has steps and is good to 0.01, at its steps 0.1.
 
     Against boundary elements (half-space, p/(E* slope) from 0.003 to 0.3; layered skin, 2 to 30 kPa, q1 = 1.3e5 1/m)

@@ -27,9 +27,9 @@ class Places(NamedTuple):
 
     Attributes
     ----------
-    plateau : shares of the plateau, strictly between 0 and 1, dimensionless, shape ``(P,)``
-    fractal : shares of the fractal part, strictly between 0 and 1, dimensionless, shape ``(F,)``
-    whole : shares of the band of a spectrum that is a table, strictly between 0 and 1, dimensionless, shape ``(T,)``
+    plateau : fractions of the plateau, strictly between 0 and 1, dimensionless, shape ``(P,)``
+    fractal : fractions of the fractal part, strictly between 0 and 1, dimensionless, shape ``(F,)``
+    whole : fractions of the band of a spectrum that is a table, strictly between 0 and 1, dimensionless, shape ``(T,)``
     """
 
     plateau: FloatArray
@@ -73,7 +73,10 @@ def resolve(spectrum: PowerSpectrum, skin: ElasticSolid, places: Places) -> Band
 
 
 def _self_affine(
-    spectrum: SelfAffineSpectrum, skin: ElasticSolid, plateau_share: FloatArray, fractal_share: FloatArray
+    spectrum: SelfAffineSpectrum,
+    skin: ElasticSolid,
+    plateau_fraction: FloatArray,
+    fractal_fraction: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     ends = (spectrum.wavevector_min, spectrum.wavevector_rolloff, spectrum.wavevector_max)
     first, knee, last = (np.log(with_axes(end, 1)) for end in ends)
@@ -82,15 +85,15 @@ def _self_affine(
     layer = np.where(np.isfinite(length), _LAYER_PLACE - np.log(length) - knee, zero)
     # everything in ln(q/q_r) = layer + width sinh(angle)
     start, stop = np.arcsinh(-layer / _LAYER_WIDTH), np.arcsinh((high - layer) / _LAYER_WIDTH)
-    angle = start + (stop - start) * fractal_share
-    plateau, fractal = low * (plateau_share - 1), layer + _LAYER_WIDTH * np.sinh(angle)
+    angle = start + (stop - start) * fractal_fraction
+    plateau, fractal = low * (plateau_fraction - 1), layer + _LAYER_WIDTH * np.sinh(angle)
     stretch = join(
-        low * np.ones_like(plateau_share), zero, _LAYER_WIDTH * (stop - start) * np.cosh(angle), zero
+        low * np.ones_like(plateau_fraction), zero, _LAYER_WIDTH * (stop - start) * np.cosh(angle), zero
     )
     # V on the cells in between, ∫ q⁴ C E_eff² dln q
     edges = join(-low, plateau, zero, fractal, high)
     fractal_slope = 2 - 2 * with_axes(spectrum.hurst_exponent, 1)
-    slope = join(np.full(plateau_share.size + 1, 4.0), fractal_slope * np.ones(fractal_share.size + 1))
+    slope = join(np.full(plateau_fraction.size + 1, 4.0), fractal_slope * np.ones(fractal_fraction.size + 1))
     width = np.diff(edges)[..., None]
     place = edges[..., :-1, None] + width * _INNER
     flat = (*place.shape[:-2], place.shape[-2] * _INNER.size)
@@ -121,7 +124,7 @@ class SeparationGrid(NamedTuple):
 
 
 def _crowded(count: int) -> tuple[FloatArray, FloatArray]:
-    """Gauss–Legendre in s for integrals over the share ``s²(1 + c)/(s + c)``: dense at 0, where integrands start like √V."""
+    """Gauss–Legendre in s for integrals over the fraction ``s²(1 + c)/(s + c)``: dense at 0, where integrands start like √V."""
     s, weights = gauss_unit(count)
     c = 0.1
     return np.square(s) * (1 + c) / (s + c), weights * (1 + c) * s * (s + 2 * c) / np.square(s + c)

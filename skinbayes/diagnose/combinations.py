@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 
 WEAK = 0.05
-"""A parameter whose effect is below this share of the largest effect is left out of a combination."""
+"""A parameter whose effect is below this fraction of the largest effect is left out of a combination."""
 
 NICE = {1: 0.05, 2: 0.02, 3: 0.02}
 """An exponent is written as a fraction with this denominator if it stays this close to it at 90 % of the points."""
@@ -163,8 +163,8 @@ def normalised(exponents: FloatArray, significant: BoolArray, powers: BoolArray)
     )
     for pivot in shown:
         size = np.abs(exponents[:, pivot])
-        share = size / np.maximum(np.abs(exponents[:, shown]).max(axis=1), 1e-300)
-        if np.quantile(share, 0.05) < 0.02 or share.min() < 1e-3:
+        fraction = size / np.maximum(np.abs(exponents[:, shown]).max(axis=1), 1e-300)
+        if np.quantile(fraction, 0.05) < 0.02 or fraction.min() < 1e-3:
             continue
         candidate = exponents / exponents[:, pivot : pivot + 1]
         cost = 0.0

@@ -15,10 +15,10 @@ from skinbayes.diagnose.combinations import (
     typical,
     with_derived,
 )
-from skinbayes.diagnose.findings import Combination, Equivalent, Freedom, Group
+from skinbayes.diagnose.findings import Combination, Equivalent, Freedom, RowGroup
+from skinbayes.diagnose.formulas import change, product
 from skinbayes.diagnose.rule import UNCHANGED
 from skinbayes.diagnose.sensitivities import IntArray, Sensitivities
-from skinbayes.diagnose.words import change, product
 
 INFORMED = float(np.sqrt(1.0 / UNCHANGED**2 - 1.0))
 """Singular value at which the posterior standard deviation is 0.9 of the prior one."""
@@ -34,7 +34,9 @@ def spread_ratios(parts: Decomposition, functionals: FloatArray) -> list[float]:
     return [float(value) for value in np.median(np.sqrt(variance), axis=0)]
 
 
-def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: IntArray, count: int) -> Group:
+def group_finding(
+    found: Sensitivities, label: str, noise: FloatArray, rows: IntArray, count: int
+) -> RowGroup:
     """What the rows ``rows``, ``count`` data, determine, given the noise of each row of the problem (shape ``(N,)``)."""
     scaled = found.scaled(noise, rows)
     parts = decompose(scaled)
@@ -44,7 +46,7 @@ def group_finding(found: Sensitivities, label: str, noise: FloatArray, rows: Int
     combinations = [_combination(found, vector, parts, rows) for vector in vectors]
     low, high = np.quantile(counts, [0.05, 0.95])
     effect = np.quantile(np.linalg.norm(scaled, axis=1), 0.9, axis=0)
-    return Group(
+    return RowGroup(
         label=label,
         rows=count,
         directions=rank,
@@ -113,7 +115,7 @@ def _renamed(
     return product(written, [name for name in combination.exponents if name in other])
 
 
-def equivalents(found: Sensitivities, groups: tuple[Group, ...]) -> tuple[Equivalent, ...]:
+def equivalents(found: Sensitivities, groups: tuple[RowGroup, ...]) -> tuple[Equivalent, ...]:
     """Derived quantities that are a power of one parameter of a named combination, the same for all rows."""
     result = []
     for name, slopes in found.derived.items():

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from skinbayes.diagnose.formulas import percent, product
 from skinbayes.diagnose.rule import verdict
-from skinbayes.diagnose.words import listed, percent, product, rows_text
+from skinbayes.phrases import and_list, row_count
 
 SIGN = 0.05
 """An exponent beyond this on both sides of zero changes sign over the prior."""
@@ -44,12 +45,12 @@ class Combination:
     def phrase(self) -> str:
         """The combination with what has to be known about it."""
         if not self.constant and len(self.exponents) > 1:
-            return f"a combination of {listed(list(self.exponents))} (its exponents vary over the prior)"
+            return f"a combination of {and_list(list(self.exponents))} (its exponents vary over the prior)"
         return self.text if self.exact else f"{self.text} (approximately)"
 
 
 @dataclass(frozen=True)
-class Group:
+class RowGroup:
     """What one group of rows determines.
 
     Attributes
@@ -72,11 +73,11 @@ class Group:
 
     def sentences(self) -> list[str]:
         """One to three sentences."""
-        start = f"{self.label} ({rows_text(self.rows)})"
+        start = f"{self.label} ({row_count(self.rows)})"
         if not self.directions:
             return [f"{start}: tells next to nothing beyond the priors."]
         phrases = [combination.phrase() for combination in self.combinations]
-        shares = [percent(combination.spread_ratio) for combination in self.combinations]
+        fractions = [percent(combination.spread_ratio) for combination in self.combinations]
         if not phrases:
             informed = "1 direction is" if self.directions == 1 else f"{self.directions} directions are"
             lines = [f"{start}: {informed} informed, with no simple names."]
@@ -85,10 +86,12 @@ class Group:
             simple = self.combinations[0].constant and len(self.combinations[0].exponents) > 1
             lines = [
                 f"{start}: {only}{'the combination ' if simple else ''}{phrases[0]} is determined; "
-                f"its spread shrinks to {shares[0]} of the prior's."
+                f"its spread shrinks to {fractions[0]} of the prior's."
             ]
         else:
-            each = "; ".join(f"{p}, spread {s} of the prior's" for p, s in zip(phrases, shares, strict=True))
+            each = "; ".join(
+                f"{p}, spread {s} of the prior's" for p, s in zip(phrases, fractions, strict=True)
+            )
             alone = all(len(combination.exponents) == 1 for combination in self.combinations)
             lines = [
                 f"{start}: {len(phrases)} {'parameters' if alone else 'combinations'} are determined: {each}."
@@ -96,7 +99,7 @@ class Group:
         weak = sorted({name for combination in self.combinations for name in combination.weak})
         if weak:
             lines.append(
-                f"{self.label}: {listed(weak)} {'plays' if len(weak) == 1 else 'play'} a small part as well."
+                f"{self.label}: {and_list(weak)} {'plays' if len(weak) == 1 else 'play'} a small part as well."
             )
         low, high = self.directions_range
         if low != high:
@@ -127,7 +130,7 @@ class Freedom:
     def sentence(self) -> str:
         """The change and its consequence."""
         effect = "changes no prediction" if self.exact else "changes the predictions less than their noise"
-        return f"{self.text} {effect}: the data cannot tell {listed(list(self.changes))} apart."
+        return f"{self.text} {effect}: the data cannot tell {and_list(list(self.changes))} apart."
 
 
 @dataclass(frozen=True)
@@ -151,7 +154,7 @@ class Equivalent:
         relation = product({self.parameter: (self.power, self.power, self.power, self.power)})
         return (
             f"Of all free parameters only {self.parameter} moves {self.derived}, which is proportional to {relation}: "
-            f"the data may as well be said to determine {listed(self.reads)}."
+            f"the data may as well be said to determine {and_list(self.reads)}."
         )
 
 
@@ -174,7 +177,7 @@ class Identifiability:
     names: tuple[str, ...]
     points: int
     failed_points: int
-    groups: tuple[Group, ...]
+    groups: tuple[RowGroup, ...]
     freedoms: tuple[Freedom, ...]
     only_prior: tuple[str, ...]
     absent: tuple[str, ...]
@@ -182,7 +185,7 @@ class Identifiability:
     equivalents: tuple[Equivalent, ...] = ()
 
     @property
-    def joint(self) -> Group:
+    def joint(self) -> RowGroup:
         """The finding for all rows together."""
         return self.groups[-1]
 
@@ -207,7 +210,7 @@ class Identifiability:
         if present:
             whose = "its" if len(present) == 1 else "their"
             lines.append(
-                f"Only the prior will speak about {listed(present)}, as far as can be said before sampling: {whose} effect is "
+                f"Only the prior will speak about {and_list(present)}, as far as can be said before sampling: {whose} effect is "
                 "below the noise of the data."
             )
         together = [
@@ -218,13 +221,13 @@ class Identifiability:
         if together:
             one = len(together) == 1
             lines.append(
-                f"By {'itself' if one else 'themselves'}, {listed(together)} will hardly differ from the "
+                f"By {'itself' if one else 'themselves'}, {and_list(together)} will hardly differ from the "
                 f"prior{'' if one else 's'}: the data know {'it' if one else 'them'} only together with others."
             )
         if self.absent:
             verb = "enters" if len(self.absent) == 1 else "enter"
             lines.append(
-                f"Only the prior speaks about {listed(list(self.absent))}, which {verb} no prediction."
+                f"Only the prior speaks about {and_list(list(self.absent))}, which {verb} no prediction."
             )
         if self.failed_points:
             lines.append(

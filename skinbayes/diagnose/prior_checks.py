@@ -9,8 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.diagnose.formulas import percent
 from skinbayes.diagnose.rule import Verdict, verdict
-from skinbayes.diagnose.words import percent
 from skinbayes.statistics.transforms import VectorTransform
 
 RIDGE = 0.9
@@ -26,7 +26,7 @@ class PriorUpdate:
     name : the parameter
     contraction : 1 − (posterior variance)/(prior variance) in the unconstrained coordinate; 1 is known exactly,
         0 is as before, negative is wider than before
-    prior_quantile : share of the prior below the posterior median
+    prior_quantile : fraction of the prior below the posterior median
     verdict : in one word
     """
 
@@ -44,19 +44,19 @@ class PriorUpdate:
         """The finding in plain English."""
         if self.verdict == "contradicted":
             side = "below" if self.prior_quantile < 0.5 else "above"
-            share = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
+            fraction = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
             return (
                 f"{self.name}: the data contradict the prior; half of the posterior lies {side} a value that the "
-                f"prior gave {share if share != '0 %' else 'no'} chance."
+                f"prior gave {fraction if fraction != '0 %' else 'no'} chance."
             )
         if self.verdict == "not updated":
             return f"{self.name}: not updated by the data; what is shown is the prior."
         if self.verdict == "moved":
             side = "below" if self.prior_quantile < 0.5 else "above"
-            share = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
+            fraction = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
             return (
                 f"{self.name}: moved by the data but not narrowed; half of the posterior lies {side} a value that the prior "
-                f"gave {share} chance."
+                f"gave {fraction} chance."
             )
         return f"{self.name}: updated by the data; its standard deviation is {percent(self.ratio)} of the prior's."
 
@@ -92,12 +92,12 @@ def prior_updates(
     'contradicted'
     """
     before, after = np.asarray(prior_draws, dtype=float), np.asarray(posterior_draws, dtype=float)
-    share = (before < np.median(after, axis=0)).mean(axis=0)
+    fraction = (before < np.median(after, axis=0)).mean(axis=0)
     if transform is not None:
         before, after = transform.forward(before), transform.forward(after)
     contraction = 1.0 - after.var(axis=0, ddof=1) / before.var(axis=0, ddof=1)
     updates = []
-    for name, shrunk, quantile in zip(names, contraction, share, strict=True):
+    for name, shrunk, quantile in zip(names, contraction, fraction, strict=True):
         ratio = float(np.sqrt(max(0.0, 1.0 - shrunk)))
         updates.append(PriorUpdate(name, float(shrunk), float(quantile), verdict(ratio, float(quantile))))
     return tuple(updates)

@@ -25,7 +25,7 @@ def verdict(ratio: float, prior_quantile: float = 0.5) -> Verdict:
     Parameters
     ----------
     ratio : posterior over prior standard deviation in the coordinate of the sampler
-    prior_quantile : share of the prior below the posterior median; 0.5, the least telling one, before there is a posterior
+    prior_quantile : fraction of the prior below the posterior median; 0.5, the least telling one, before there is a posterior
 
     Examples
     --------

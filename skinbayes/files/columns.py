@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from skinbayes import vocabulary
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.table import Problems, Table, quoted
+from skinbayes.files.table import CsvTable, Problems, quoted
 from skinbayes.units import comma_advice, convert_array, describe_unit, is_unit, split_header
 from skinbayes.vocabulary import Quantity
 
@@ -35,7 +35,7 @@ _LONGEST_SHOWN = 20
 
 
 def read_quantity(
-    table: Table,
+    table: CsvTable,
     position: int,
     quantity: Quantity,
     unit: str,
@@ -102,7 +102,7 @@ def _unit_after(quantity: Quantity) -> str:
 
 
 def read_labels(
-    table: Table, position: int, name: str, problems: Problems, missing: Missing = "refuse"
+    table: CsvTable, position: int, name: str, problems: Problems, missing: Missing = "refuse"
 ) -> LabelArray:
     """One column of labels, shape (n_rows,), on one line in Unicode normal form C; unusable ones are noted in ``problems``."""
     cells = [" ".join(normalize("NFC", cell).splitlines()) for cell in table.column(position)]
@@ -122,7 +122,7 @@ def read_labels(
 
 
 def read_columns(
-    table: Table, problems: Problems | None = None, missing: Missing = "refuse"
+    table: CsvTable, problems: Problems | None = None, missing: Missing = "refuse"
 ) -> tuple[dict[str, FloatArray | LabelArray], dict[str, str]]:
     """All columns of a table by name, and the unit of each numeric column.
 
@@ -203,7 +203,7 @@ def known_names() -> list[str]:
     return [name for name in (*vocabulary.QUANTITIES, *vocabulary.LABELS) if not name.startswith(inner)]
 
 
-def _refuse_foreign_header(table: Table) -> None:
+def _refuse_foreign_header(table: CsvTable) -> None:
     """Refuse a file of which no column is known, without quoting it: a model may name any file there is."""
     for header in table.header:
         name, _ = split_header(header)

@@ -195,7 +195,7 @@ def _coordinate(
     for place, error_here in zip(one.places, spread.tolist(), strict=True):
         if not 0.0 < error_here < inf:
             raise InputError(
-                f"{where}, {place}: the reading error of {axis} '{quantity.name}' is {error_here:g}; expected > 0. A share of "
+                f"{where}, {place}: the reading error of {axis} '{quantity.name}' is {error_here:g}; expected > 0. A fraction of "
                 f"zero is zero: state an absolute error with --{axis}-error"
             )
     return values, spread

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.table import MAX_ROWS, MOST_COLUMNS, Table, quoted
+from skinbayes.files.table import MAX_ROWS, MOST_COLUMNS, CsvTable, quoted
 from skinbayes.units import describe_unit, split_header
 from skinbayes.vocabulary import Quantity, lookup, spread_of
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
-def table_of_columns(columns: Mapping[str, Any] | DataFrame, name: str) -> Table:
+def table_of_columns(columns: Mapping[str, Any] | DataFrame, name: str) -> CsvTable:
     """The table of a data frame or a mapping of headers to values, each of shape (n_rows,).
 
     Numbers become the shortest text that denotes them, missing values empty cells.
@@ -44,7 +44,7 @@ def table_of_columns(columns: Mapping[str, Any] | DataFrame, name: str) -> Table
     if not 0 < rows <= MAX_ROWS:
         raise InputError(f"{name}: {rows} rows of data; expected 1 to {MAX_ROWS}")
     headers, cells = zip(*found, strict=True)
-    return Table(
+    return CsvTable(
         Path(name), headers, 0, tuple(range(1, rows + 1)), tuple(zip(*cells, strict=True)), "", "row"
     )
 

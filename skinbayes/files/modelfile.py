@@ -46,7 +46,7 @@ class ModelSpec:
     rheology, rheology_by : data set of flow curves (shipped key or path) and the grouping column they belong to, or None
     derived : named products to compute afterwards
     conditions : conditions used by ``predict`` when none are given
-    yardsticks : models beside which a fit is always shown, shipped names or paths
+    baseline_models : models beside which a fit is always shown, shipped names or paths
     """
 
     name: str
@@ -74,7 +74,7 @@ class ModelSpec:
     rheology_by: str | None = None
     derived: dict[str, DerivedBlock] = field(default_factory=dict)
     conditions: dict[str, FloatArray] = field(default_factory=dict)
-    yardsticks: tuple[str, ...] = ()
+    baseline_models: tuple[str, ...] = ()
 
     @property
     def shipped(self) -> bool:
@@ -208,15 +208,15 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         conditions={
             key: _read_grid(key, grid, where("conditions", key)) for key, grid in block.conditions.items()
         },
-        yardsticks=_read_yardsticks(block, path, where("yardsticks")),
+        baseline_models=_read_baseline_models(block, path, where("baseline_models")),
     )
 
 
-def _read_yardsticks(block: ModelBlock, path: Path, where: str) -> tuple[str, ...]:
+def _read_baseline_models(block: ModelBlock, path: Path, where: str) -> tuple[str, ...]:
     """Shipped names as they are, paths relative to the model file; whether a file is there is seen when it is used."""
     shipped = shipped_names("models")
     found = []
-    for text in block.yardsticks:
+    for text in block.baseline_models:
         if text not in shipped and Path(text).suffix != ".toml":
             raise InputError(
                 f"{where}: no model {text[:80]!r}.{suggestions(text[:80], list(shipped))} Expected a shipped model, or the path "
@@ -226,7 +226,7 @@ def _read_yardsticks(block: ModelBlock, path: Path, where: str) -> tuple[str, ..
     stems = [Path(name).stem for name in found]
     if len({path.stem, *stems}) <= len(stems):
         raise InputError(
-            f"{where}: found {', '.join(block.yardsticks)}; expected other models than '{path.stem}', each once"
+            f"{where}: found {', '.join(block.baseline_models)}; expected other models than '{path.stem}', each once"
         )
     if found and block.data is None:
         raise InputError(f"{where}: a model without data has nothing to be compared on; leave them out")

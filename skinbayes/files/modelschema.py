@@ -149,7 +149,14 @@ class ModelBlock(_Strict):
     rheology: RheologyBlock | None = None
     derived: dict[str, DerivedBlock] = Field(default_factory=dict)
     conditions: dict[str, GridBlock] = Field(default_factory=dict)
-    yardsticks: list[str] = Field(default_factory=list)
+    baseline_models: list[str] = Field(default_factory=list)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _retired(cls, content: Any) -> Any:
+        if isinstance(content, dict) and "yardsticks" in content:
+            raise ValueError("'yardsticks' is called 'baseline_models' now")
+        return content
 
     @model_validator(mode="after")
     def _data_need_noise(self) -> ModelBlock:

@@ -237,13 +237,13 @@ SMALLEST, LARGEST = 1e-30, 1e30
 """Sizes of numbers in SI that anything about skin has, with a wide margin; products of powers of them stay numbers."""
 
 TAIL = 0.01
-"""Share of a prior that may lie beyond these sizes at either end."""
+"""Fraction of a prior that may lie beyond these sizes at either end."""
 
 
 def _check_sizes(prior: Prior, quantity: Quantity, where: str, unit: str) -> None:
     """Refuse a prior of which a noticeable part is too large or too small to be computed with."""
     with np.errstate(all="ignore"):
-        low, high = (float(prior.quantile(share)) for share in (TAIL, 1 - TAIL))
+        low, high = (float(prior.quantile(fraction)) for fraction in (TAIL, 1 - TAIL))
     # one that goes through zero has any number of small values, and none of them matters
     smallest = low if prior.support[0] >= 0 else max(-low, high)
     if not (smallest >= SMALLEST and max(abs(low), abs(high)) <= LARGEST):

@@ -9,7 +9,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.columns import read_quantity
-from skinbayes.files.table import Problems, Table, quoted, read_table
+from skinbayes.files.table import CsvTable, Problems, quoted, read_table
 from skinbayes.roughness import TabulatedSpectrum
 from skinbayes.units import describe_unit, split_header
 from skinbayes.vocabulary import Quantity, suggestions
@@ -82,7 +82,7 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
         raise InputError(f"{path}, column '{power_name}': {error}") from None
 
 
-def _columns(table: Table) -> dict[str, tuple[int, str]]:
+def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
     """Position and unit of each column; InputError for anything but one wavevector and one spectrum."""
     where = f"{table.path}, line {table.header_line}"
     named: dict[str, tuple[int, str]] = {}
@@ -109,7 +109,9 @@ def _columns(table: Table) -> dict[str, tuple[int, str]]:
     return named
 
 
-def _check_increasing(table: Table, position: int, values: FloatArray, unit: str, problems: Problems) -> None:
+def _check_increasing(
+    table: CsvTable, position: int, values: FloatArray, unit: str, problems: Problems
+) -> None:
     cells = table.column(position)
     for row in np.flatnonzero(values[1:] <= values[:-1]).tolist():
         problems.add(

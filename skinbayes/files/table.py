@@ -46,16 +46,16 @@ class Problems:
         Where there are too many to be listed, the first of each ``kind`` in each column comes before others of its kind.
         """
         self.count += 1
-        alike = self._noted.setdefault((position, kind), [])
-        if len(alike) < MOST_SHOWN:
-            alike.append((line, position, text))
+        same_kind = self._noted.setdefault((position, kind), [])
+        if len(same_kind) < MOST_SHOWN:
+            same_kind.append((line, position, text))
 
     def raise_if_any(self) -> None:
         """Raise InputError that lists the problems, if there are any."""
         if self.count == 0:
             return
-        first = sorted(alike[0] for alike in self._noted.values())
-        others = sorted(problem for alike in self._noted.values() for problem in alike[1:])
+        first = sorted(same_kind[0] for same_kind in self._noted.values())
+        others = sorted(problem for same_kind in self._noted.values() for problem in same_kind[1:])
         listed = sorted([*first, *others][:MOST_SHOWN])
         shown = [f"{self.row_word} {line}{text}" if line else text.lstrip(":, ") for line, _, text in listed]
         if self.count == 1:
@@ -66,7 +66,7 @@ class Problems:
 
 
 @dataclass(frozen=True)
-class Table:
+class CsvTable:
     """A rectangular table of text.
 
     Attributes
@@ -101,7 +101,7 @@ def quoted(text: str, longest: int = 40) -> str:
     return repr(text if len(text) <= longest else text[: longest - 3] + "...")
 
 
-def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | None = None) -> Table:
+def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | None = None) -> CsvTable:
     """Read a table of text: one header line, comments, cells separated by commas, semicolons or tabs.
 
     What separates the cells is seen in the header, or said by a first line ``sep=;``. Numbers may have decimal commas where
@@ -159,7 +159,7 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | Non
     if len(named) < len(header):
         header, rows = tuple(header[i] for i in named), [tuple(row[i] for i in named) for row in rows]
     rows = with_points(path, header, lines, rows, records.separator)
-    return Table(path, header, header_line, tuple(lines), tuple(rows), hashlib.sha256(data).hexdigest())
+    return CsvTable(path, header, header_line, tuple(lines), tuple(rows), hashlib.sha256(data).hexdigest())
 
 
 def _length(cells: tuple[str, ...], expected: int) -> str:

@@ -146,7 +146,9 @@ def _composed(item: Any, key: str = "") -> Any:
         return {normalize("NFC", name): _composed(value, name) for name, value in item.items()}
     if isinstance(item, list):
         return [_composed(value, key) for value in item]
-    return normalize("NFC", item) if isinstance(item, str) and key not in ("file", "yardsticks") else item
+    return (
+        normalize("NFC", item) if isinstance(item, str) and key not in ("file", "baseline_models") else item
+    )
 
 
 def line_of(text: str, keys: Sequence[str]) -> int | None:

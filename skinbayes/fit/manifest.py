@@ -17,8 +17,8 @@ SUMMARY = "summary.csv"
 STEPS = "steps"
 """Folder of the sampler's step store inside a run directory."""
 
-YARDSTICK_MODELS = "yardstick-models"
-"""Folder of the user's own yardsticks inside a run directory."""
+BASELINE_MODELS = "baseline-models"
+"""Folder of the user's own baseline models inside a run directory."""
 
 MARK = "skinbayes run "
 FORMAT = f"{MARK}2"

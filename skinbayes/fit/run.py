@@ -80,7 +80,7 @@ def sample(
     require_data(problem)
     name, chosen = find_engine(engine)
     settings = options_for(
-        name, chosen, **{"seed": seed, "ess": ess, "cores": cores, "costly": problem.costly, **options}
+        name, chosen, **{"seed": seed, "ess": ess, "cores": cores, "expensive": problem.expensive, **options}
     )
     settings.check(problem.dimension)  # before anything is written
 

@@ -19,11 +19,11 @@ from skinbayes.errors import (
     cannot_write,
 )
 from skinbayes.fit.manifest import (
+    BASELINE_MODELS,
     RESULT,
     RUN,
     STEPS,
     SUMMARY,
-    YARDSTICK_MODELS,
     Manifest,
     trouble,
     write_manifest,
@@ -31,7 +31,7 @@ from skinbayes.fit.manifest import (
 from skinbayes.fit.netcdf import result_image
 from skinbayes.fit.run_inputs import (
     Held,
-    own_yardsticks,
+    own_baseline_models,
     read_run,
     remove_leftovers,
     warn_of_repair,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from skinbayes.fit.result import FitResult
     from skinbayes.problem import Problem
 
-FOLDERS = ("data", STEPS, YARDSTICK_MODELS)
+FOLDERS = ("data", STEPS, BASELINE_MODELS)
 """Folders inside a run directory."""
 
 
@@ -88,10 +88,10 @@ class RunDirectory:
         """
         try:
             self._examine()  # before anything is written
-            for path in own_yardsticks(self._problem):
+            for path in own_baseline_models(self._problem):
                 if not path.is_file():
                     raise InputError(
-                        f"{self._problem.spec.path}: yardsticks: no file {path}; expected a model file to compare with"
+                        f"{self._problem.spec.path}: baseline_models: no file {path}; expected a model file to compare with"
                     )
             self.path.mkdir(parents=True, exist_ok=True)
             self._lock = RunLock(self.path)

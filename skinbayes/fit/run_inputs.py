@@ -12,7 +12,7 @@ from skinbayes.atomic import PARTIAL, write_atomically
 from skinbayes.errors import InputError, RepairWarning
 from skinbayes.files.locate import shipped_names
 from skinbayes.files.spectrum import spectrum_text
-from skinbayes.fit.manifest import RUN, STEPS, YARDSTICK_MODELS, Manifest, read_manifest, write_manifest
+from skinbayes.fit.manifest import BASELINE_MODELS, RUN, STEPS, Manifest, read_manifest, write_manifest
 from skinbayes.fit.run_lock import LOCK
 from skinbayes.problem.rheology import flow_curves_text
 from skinbayes.sampling.store import stored_fingerprint
@@ -100,13 +100,13 @@ def remove_leftovers(directory: Path) -> None:
             item.unlink(missing_ok=True)
 
 
-def own_yardsticks(problem: Problem) -> list[Path]:
-    """Yardsticks that are no shipped models."""
-    return [Path(name) for name in problem.spec.yardsticks if Path(name).suffix == ".toml"]
+def own_baseline_models(problem: Problem) -> list[Path]:
+    """Baseline models that are no shipped models."""
+    return [Path(name) for name in problem.spec.baseline_models if Path(name).suffix == ".toml"]
 
 
 def write_inputs(directory: Path, problem: Problem, engine: str) -> Manifest:
-    """Put note, model file, data, curves and yardsticks of a problem into its run directory.
+    """Put note, model file, data, curves and baseline models of a problem into its run directory.
 
     What stands there already and differs is put aside and named in a :class:`RepairWarning`.
     """
@@ -141,7 +141,7 @@ def write_inputs(directory: Path, problem: Problem, engine: str) -> Manifest:
             copies["spectrum.csv"] = problem.spec.surface_file
         else:
             texts["spectrum.csv"] = spectrum_text(spectrum)
-    copies |= {f"{YARDSTICK_MODELS}/{path.name}": path for path in own_yardsticks(problem)}
+    copies |= {f"{BASELINE_MODELS}/{path.name}": path for path in own_baseline_models(problem)}
     # read first: the user may point at the copies of an earlier run in this very directory
     contents = {name: source.read_bytes() for name, source in copies.items()}
     contents |= {name: text.encode() for name, text in texts.items()}

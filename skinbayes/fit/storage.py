@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.errors import InputError, RepairWarning
 from skinbayes.fit.fit import Fit
 from skinbayes.fit.manifest import (
+    BASELINE_MODELS,
     RESULT,
     RUN,
     STEPS,
     SUMMARY,
-    YARDSTICK_MODELS,
     Manifest,
     read_manifest,
     trouble,
@@ -159,10 +159,10 @@ def _from_copies(run: Path, manifest: Manifest) -> Problem:
         data = data.select(manifest.rows) if manifest.rows else data
     problem = load_problem(run / "model.toml", data, settings, rheology=rheology)
     copies = [
-        str(run / YARDSTICK_MODELS / Path(name).name) if Path(name).suffix == ".toml" else name
-        for name in problem.spec.yardsticks
+        str(run / BASELINE_MODELS / Path(name).name) if Path(name).suffix == ".toml" else name
+        for name in problem.spec.baseline_models
     ]
-    return replace(problem, spec=replace(problem.spec, yardsticks=tuple(copies)))
+    return replace(problem, spec=replace(problem.spec, baseline_models=tuple(copies)))
 
 
 def _renamed(problem: Problem, provenance: Mapping[str, Any]) -> Problem:

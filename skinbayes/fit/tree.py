@@ -105,7 +105,7 @@ def columns_to_leave_out(problem: Problem) -> list[str]:
 
 
 def _flags(problem: Problem, draws: FloatArray) -> dict[str, Any]:
-    """Share of the draws in which each row's prediction lies at the edge of the theory, by flag."""
+    """Fraction of the draws in which each row's prediction lies at the edge of the theory, by flag."""
     flat = draws.reshape(-1, draws.shape[-1])
     found = problem.flags(flat[:: max(1, len(flat) // FLAG_DRAWS)])
     return {name: (("row",), values.mean(axis=0), {"units": "1"}) for name, values in found.items()}

@@ -104,7 +104,7 @@ class ForwardModel:
     flag_meanings : what each flag says, a clause
     prepare : ``(model, ranges, tables, progress, cores) ->`` the same model with a faster evaluation within ranges, or None
     accuracy : a sentence on the error of the evaluation, empty if it is that of the physics below
-    costly : True if an evaluation takes so long (a tenth of a millisecond) that fewer walkers are better
+    expensive : True if an evaluation takes so long (a tenth of a millisecond) that fewer walkers are better
     uses_flow_curves : True if flow curves of liquids may stand for ``viscosity``
     uses_surface : True if a roughness spectrum enters: the five roughness inputs, or a tabulated spectrum
     quantities : quantities of its own, which become known with it
@@ -134,7 +134,7 @@ class ForwardModel:
     prepare: Callable[[ForwardModel, Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""
     abscissa: Callable[[Inputs, Tables], FloatArray] | None = None
-    costly: bool = False
+    expensive: bool = False
     uses_flow_curves: bool = False
     quantities: tuple[Quantity, ...] = ()
     options: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

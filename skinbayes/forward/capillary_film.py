@@ -8,7 +8,6 @@ from typing import Literal
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
@@ -21,6 +20,7 @@ from skinbayes.forward.contact_inputs import (
     spectrum_of,
     validate_contact,
 )
+from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
 from skinbayes.wetting import capillary_state
 
@@ -76,8 +76,8 @@ def _explain(inputs: Inputs, tables: Tables) -> list[str]:
     """Why there is no prediction."""
     if (np.asarray(inputs["film_thickness"]) == 0).any():
         return [
-            "film_thickness is 0: as a film vanishes from a soft layer its pull grows without limit, and skin without water is "
-            "not the end of this curve; 'contact-area' has dry skin."
+            "film_thickness is 0: as a film vanishes from a soft layer its capillary pressure grows without limit, and skin "
+            "without water is not the end of this curve; 'contact-area' has dry skin."
         ]
     return explain_small_contact(inputs, tables)
 
@@ -123,6 +123,7 @@ def capillary_film_model(closure: Closure = "gaussian") -> ForwardModel:
         options=CLOSURES,
         variant=capillary_film_model,
         chosen={"closure": closure},
+        expensive=True,
         required=("film_thickness", SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES, *WATER_INPUTS),
         goes_with=GOES_WITH,
         optional=BRIDGED_SKIN_DEFAULTS,

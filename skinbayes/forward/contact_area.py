@@ -56,7 +56,7 @@ def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         "relative_contact_area": area.total,
         "relative_contact_area_elastic": area.elastic,
         "relative_contact_area_plastic": area.plastic,
-        "plastic_share": area.plastic_share,
+        "plastic_fraction": area.plastic_fraction,
         "surface_response": surface_response(skin, wavevector[..., np.newaxis])[..., 0],
         "effective_modulus": effective_modulus(skin, wavevector[..., np.newaxis])[..., 0],
     }
@@ -92,7 +92,7 @@ MODEL = ForwardModel(
         "relative_contact_area",
         "relative_contact_area_elastic",
         "relative_contact_area_plastic",
-        "plastic_share",
+        "plastic_fraction",
         "surface_response",
         "effective_modulus",
     ),

@@ -16,8 +16,8 @@ from skinbayes.contact import (
     validate_solid,
 )
 from skinbayes.errors import InputError
-from skinbayes.forward.alike_rows import on_distinct
 from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs, Tables
+from skinbayes.forward.deduplicated_rows import on_distinct
 from skinbayes.roughness import (
     PowerSpectrum,
     SelfAffineSpectrum,

@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure, film_profiles
 from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
+from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
     DRYING_DEFAULTS,
@@ -106,7 +106,7 @@ def drying_model(closure: Closure = "gaussian") -> ForwardModel:
         optional=DRYING_DEFAULTS,
         goes_with=DRYING_GOES_WITH,
         accepted=DRYING_ACCEPTED,
-        costly=True,
+        expensive=True,
         prepare=prepared_drying if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,

@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.alike_rows import once_for_alike
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
+from skinbayes.forward.deduplicated_rows import once_for_distinct
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
     DRYING_DEFAULTS,
@@ -48,7 +48,7 @@ def _evaluate(
 ) -> dict[str, FloatArray]:
     # noise that differs by row must not part rows that share a curve
     known = {name: value for name, value in inputs.items() if name in MODEL.input_names()}
-    return once_for_alike(known, partial(_features, tables=tables, closure=closure, table=table))
+    return once_for_distinct(known, partial(_features, tables=tables, closure=closure, table=table))
 
 
 def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
@@ -62,14 +62,14 @@ def _explain(inputs: Inputs, tables: Tables, closure: Closure) -> list[str]:
             "dry_time are missing"
         )
     wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
-    pull = inputs["surface_tension"] * np.maximum(wetting, 0.0)
-    if (missing & (pull == 0.0)).any():
+    wetting_tension = inputs["surface_tension"] * np.maximum(wetting, 0.0)
+    if (missing & (wetting_tension == 0.0)).any():
         said.append(
             "no friction peak: without surface tension, or where the cosines of the two contact angles do not sum to more than "
             "0, there are no capillary bridges to raise friction above the wet plateau; peak_time, peak_friction and peak_width "
             "are missing"
         )
-    if (missing & (pull > 0.0)).any():
+    if (missing & (wetting_tension > 0.0)).any():
         said.append(
             "no friction peak: capillary bridges do not outweigh the hardening of the drying layer, so that friction never rises "
             "above the wet plateau; peak_time, peak_friction and peak_width are missing"
@@ -95,7 +95,7 @@ def features_model(closure: Closure = "gaussian") -> ForwardModel:
         optional=DRYING_DEFAULTS,
         goes_with=DRYING_GOES_WITH,
         accepted=DRYING_ACCEPTED,
-        costly=True,
+        expensive=True,
         prepare=prepared_drying if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_contact,

@@ -41,12 +41,17 @@ def table_over(
         return None
     spectrum, skin, load = spectrum_of(inputs, tables), skin_of(inputs), nominal_pressure_of(inputs)
     wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
-    pull = inputs["surface_tension"] * np.maximum(wetting, 0.0)
-    if not pull.max() > 0:
+    wetting_tension = inputs["surface_tension"] * np.maximum(wetting, 0.0)
+    if not wetting_tension.max() > 0:
         return None
     height = np.broadcast_to(rms_height(spectrum), load.shape)
     groups = skin_groups(
-        load, pull, height=height, spectrum=spectrum, skin=skin, area_correction=inputs["area_correction"]
+        load,
+        wetting_tension,
+        height=height,
+        spectrum=spectrum,
+        skin=skin,
+        area_correction=inputs["area_correction"],
     )
     modulus = inputs["young_modulus" if "young_modulus" in inputs else "young_modulus_bulk"]
     depth = float(np.max(load / modulus)) / known["film_floor"][0]

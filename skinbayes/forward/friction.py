@@ -36,7 +36,7 @@ def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         "nominal_pressure": nominal_pressure_of(inputs),
         "rms_slope": rms_slope(spectrum_of(inputs, tables)),
         "relative_contact_area": area.total,
-        "plastic_share": area.plastic_share,
+        "plastic_fraction": area.plastic_fraction,
     }
 
 
@@ -53,7 +53,7 @@ MODEL = ForwardModel(
     flags=small_contact_flags,
     flag_meanings=SMALL_CONTACT,
     derived=_derived,
-    derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_share"),
+    derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_fraction"),
     blocks=("rms_slope",),
     profiles=(CONTACT_AREA_PROFILE,),
 )

@@ -1,10 +1,10 @@
 """Forward model ``humid-air``: contact and friction of skin in equilibrium with humid air (Appendix A, Figs. 16 and 17).
 
-Bridges of a few nanometres pull the skin together, and the modulus of the layer follows the humidity. The pull is that of
-elastic gaps. The contact area is then elastoplastic under load and pull together, as in ``drying``: dry stiff skin yields, and
-without that the friction of dry skin would come out a hundred times too small. Where contacts have yielded the gaps beside them
-are not the elastic ones, but there the pull is a few percent of the load. With an infinite yield stress, the default, the area
-is the elastic one of Fig. 16.
+Bridges of a few nanometres pull the skin together, and the modulus of the layer follows the humidity. The capillary pressure is
+that of elastic gaps. The contact area is then elastoplastic under load and capillary pressure together, as in ``drying``: dry
+stiff skin yields, and without that the friction of dry skin would come out a hundred times too small. Where contacts have
+yielded the gaps beside them are not the elastic ones, but there the capillary pressure is a few percent of the load. With an
+infinite yield stress, the default, the area is the elastic one of Fig. 16.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import total_contact_area, twice_stress_variance
-from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import (
@@ -27,6 +26,7 @@ from skinbayes.forward.contact_inputs import (
     skin_of,
     spectrum_of,
 )
+from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
     CURVE_INPUTS,
@@ -39,18 +39,18 @@ from skinbayes.forward.humid_air_inputs import (
     validate_humid_air,
     with_modulus,
 )
-from skinbayes.forward.humid_air_table import TabulatedPull, prepared_humid_air
+from skinbayes.forward.humid_air_table import TabulatedBridges, prepared_humid_air
 from skinbayes.forward.small_contact import SMALL_CONTACT, small_contact_flags
 from skinbayes.friction import friction_coefficient
 from skinbayes.wetting import MOLECULE_DIAMETER, capillary_state_in_humid_air, is_below_molecule
 
 OBSERVABLES = ("friction_coefficient", "relative_contact_area", "kelvin_radius", "capillary_pressure")
 
-STRONG_PULL = 0.5
-"""Pull over load from which the two closures of the gaps differ by more than about 20 % in the contact area."""
+STRONG_BRIDGES = 0.5
+"""Capillary pressure over load from which the two closures of the gaps differ by more than about 20 % in the contact area."""
 
 FLAGS = {
-    "strong_bridges": f"bridges pull with more than {STRONG_PULL:g} of the load; how hard hangs on the closure of the gaps "
+    "strong_bridges": f"bridges pull with more than {STRONG_BRIDGES:g} of the load; how hard hangs on the closure of the gaps "
     "(the option closure), so rely neither on the value nor on the humidity at which contact is lost",
     "below_molecule": f"bridges span less than {MOLECULE_DIAMETER * 1e9:g} nm, the size of a water molecule, and are no more "
     "than a figure of speech",
@@ -65,7 +65,7 @@ _PRESSES = {
     "area_correction",
     "nominal_pressure",
 }
-"""What the pull depends on."""
+"""What the capillary pressure depends on."""
 
 
 def _with_pressing(inputs: Inputs) -> dict[str, FloatArray]:
@@ -89,25 +89,27 @@ def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closu
     return {"capillary_pressure": np.asarray(state.capillary_pressure)}
 
 
-def _pull(known: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None) -> FloatArray:
-    """Pull of the bridges over the nominal area [Pa], shape ``(B, N)``, of inputs with the modulus of each row."""
+def _capillary_pressure(
+    known: Inputs, tables: Tables, closure: Closure, table: TabulatedBridges | None
+) -> FloatArray:
+    """Capillary pressure of the bridges [Pa], shape ``(B, N)``, of inputs with the modulus of each row."""
 
     def solved(inputs: Inputs) -> FloatArray:
         pressing = {name: value for name, value in inputs.items() if name in _PRESSES}
         found = along_rows(pressing, "relative_humidity", partial(_solved, tables=tables, closure=closure))
         return found["capillary_pressure"]
 
-    return solved(known) if table is None else table.pull(known, tables, solved)
+    return solved(known) if table is None else table.capillary_pressure(known, tables, solved)
 
 
 def _evaluate(
-    inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None = None
+    inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedBridges | None = None
 ) -> dict[str, FloatArray]:
     known = _with_pressing(inputs)
-    load, pull = known["nominal_pressure"], _pull(known, tables, closure, table)
+    load, capillary_pressure = known["nominal_pressure"], _capillary_pressure(known, tables, closure, table)
     twice_variance = twice_stress_variance(spectrum_of(known, tables), skin_of(known))
     area = total_contact_area(
-        load + pull,
+        load + capillary_pressure,
         twice_variance,
         yield_stress=known["yield_stress"],
         area_correction=known["area_correction"],
@@ -118,19 +120,19 @@ def _evaluate(
         ),
         "relative_contact_area": area,
         "kelvin_radius": kelvin_radius_of(known),
-        "capillary_pressure": pull,
+        "capillary_pressure": capillary_pressure,
     }
 
 
 def _flags(
-    inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedPull | None = None
+    inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedBridges | None = None
 ) -> dict[str, NDArray[np.bool_]]:
     known = _with_pressing(inputs)
-    pull, gap = _pull(known, tables, closure, table), kelvin_gap_of(known)
+    capillary_pressure, gap = _capillary_pressure(known, tables, closure, table), kelvin_gap_of(known)
     below = (is_below_molecule(gap) > 0) & bridges_form(known)
     return {
-        "strong_bridges": pull > STRONG_PULL * known["nominal_pressure"],
-        "below_molecule": np.broadcast_to(below, pull.shape),
+        "strong_bridges": capillary_pressure > STRONG_BRIDGES * known["nominal_pressure"],
+        "below_molecule": np.broadcast_to(below, capillary_pressure.shape),
         **small_contact_flags(inputs, tables),
     }
 
@@ -202,7 +204,7 @@ def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
         exclusive=(MODULUS_ALTERNATIVES,),
         goes_with=GOES_WITH,
         optional=HUMID_AIR_DEFAULTS,
-        costly=True,
+        expensive=True,
         prepare=prepared_humid_air if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
         validate=validate_humid_air,

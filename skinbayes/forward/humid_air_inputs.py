@@ -119,10 +119,10 @@ def kelvin_gap_of(inputs: Inputs) -> FloatArray:
     return np.asarray(found)
 
 
-def pull_of(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+def kelvin_gap_and_strength(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
     """Return d_K [m] and the Laplace pressure over the nominal one, p_K/p0, both as if no gap were below `LINEAR_GAP`.
 
-    In narrower gaps, those of very dry air and of water that hardly wets, the pull depends on p_K d_K alone.
+    In narrower gaps, those of very dry air and of water that hardly wets, the capillary pressure depends on p_K d_K alone.
     """
     gap, load = kelvin_gap_of(inputs), nominal_pressure_of(inputs)
     tension = surface_tension_of_water(inputs["temperature"])

@@ -18,7 +18,7 @@ from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
     at_skin,
     bridges_form,
-    pull_of,
+    kelvin_gap_and_strength,
 )
 from skinbayes.roughness import rms_height
 from skinbayes.wetting import HumidTable, humid_groups, humid_table
@@ -31,8 +31,8 @@ _DRIEST, _WET, _WETTEST = 0.04, 0.998, 0.9999
 
 
 @dataclass(frozen=True, eq=False)
-class TabulatedPull:
-    """Pull of bridges from a table of the gaps that they span.
+class TabulatedBridges:
+    """Capillary pressure of bridges from a table of the gaps that they span.
 
     Attributes
     ----------
@@ -43,9 +43,11 @@ class TabulatedPull:
     table: HumidTable
     shape: dict[str, float]
 
-    def pull(self, inputs: Inputs, tables: Tables, solved: Callable[[Inputs], FloatArray]) -> FloatArray:
-        """Pull [Pa], shape ``(B, N)``, of inputs that broadcast to it; by ``solved`` where the table does not reach."""
-        gap, strength = pull_of(inputs)
+    def capillary_pressure(
+        self, inputs: Inputs, tables: Tables, solved: Callable[[Inputs], FloatArray]
+    ) -> FloatArray:
+        """Capillary pressure [Pa], shape ``(B, N)``, of inputs that broadcast to it; by ``solved`` beyond the table."""
+        gap, strength = kelvin_gap_and_strength(inputs)
         wetted = bridges_form(inputs)
         height = rms_height(spectrum_of(inputs, tables))
         load, skin = inputs["nominal_pressure"], skin_of(inputs)
@@ -75,10 +77,10 @@ class TabulatedPull:
         return found
 
 
-def pull_over(
+def bridges_over(
     ranges: Ranges, optional: dict[str, float], tables: Tables, progress: Progress | None
-) -> TabulatedPull | None:
-    """Return the pull of bridges for all skins within ``ranges``, or None if they differ in too much.
+) -> TabulatedBridges | None:
+    """Return the capillary pressure of bridges for all skins within ``ranges``, or None if they differ in too much.
 
     Parameters
     ----------
@@ -103,7 +105,7 @@ def pull_over(
     inputs["relative_humidity"] = np.minimum(inputs["relative_humidity"], _WETTEST)
     if not bridges_form(inputs).any():
         return None
-    gap, strength = pull_of(inputs)
+    gap, strength = kelvin_gap_and_strength(inputs)
     spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
     height = np.broadcast_to(rms_height(spectrum), gap.shape)
     groups = humid_groups(nominal_pressure_of(inputs), gap, height=height, skin=skin)
@@ -117,14 +119,14 @@ def pull_over(
         area_correction=one["area_correction"],
         progress=progress,
     )
-    return None if table is None else TabulatedPull(table, shape)
+    return None if table is None else TabulatedBridges(table, shape)
 
 
 def prepared_humid_air(
     model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
 ) -> ForwardModel:
     """Return a model of skin in humid air whose functions take a ``table`` with the table for ``ranges``, if there is one."""
-    table = pull_over(ranges, model.defaults(ranges), tables, progress)
+    table = bridges_over(ranges, model.defaults(ranges), tables, progress)
     if table is None:
         return model
     return replace(

@@ -22,7 +22,7 @@ from skinbayes.forward.stribeck_direct import (
     speed_viscosity_product_of,
 )
 from skinbayes.forward.stribeck_table import prepare
-from skinbayes.lubrication import LARGEST_STRAIN, SILENT, THICKEST_FILM
+from skinbayes.lubrication import LARGEST_STRAIN, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
 from skinbayes.roughness import rms_slope
 
 SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
@@ -43,7 +43,7 @@ def _explain(inputs: Inputs, tables: Tables) -> list[str]:
     """Why points of the curve are missing or doubtful."""
     found = solve(inputs, tables, MODEL.input_names())
     said = []
-    for name, reason in (SILENT | FLAGS).items():
+    for name, reason in (REASONS_FOR_NO_PREDICTION | FLAGS).items():
         count, total = int(np.count_nonzero(found[name])), found[name].size
         if count:
             said.append(f"{count} of {total} points: {reason}.")
@@ -95,7 +95,7 @@ MODEL = ForwardModel(
     flag_meanings=FLAGS,
     prepare=prepare,
     abscissa=_abscissa,
-    costly=True,
+    expensive=True,
     uses_flow_curves=True,
     derived=_derived,
     derived_names=("rms_slope",),

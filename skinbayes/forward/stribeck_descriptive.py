@@ -74,7 +74,7 @@ def _profile(inputs: Inputs, tables: Tables, products: FloatArray) -> FloatArray
 
 MODEL = ForwardModel(
     name="stribeck-descriptive",
-    summary="a Stribeck curve that only describes: plateau, transition, rising branch; the yardstick of theories",
+    summary="a Stribeck curve that only describes: plateau, transition, rising branch; the baseline model of theories",
     observables=("friction_coefficient",),
     required=(*LAW, "normal_force", (("speed_viscosity_product",), ("viscosity", "sliding_speed"))),
     optional={"transition_load_exponent": 0.0},

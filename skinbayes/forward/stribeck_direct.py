@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import cylinder_of_sphere
-from skinbayes.forward.alike_rows import along_rows
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
+from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
@@ -23,7 +23,7 @@ from skinbayes.lubrication import (
 )
 
 NOTABLE_FILM = THICKEST_FILM / 5
-"""3π ηv/f_N beyond which a prediction is marked: the share of the load beyond the edge of the ball grows to a fifth at five
+"""3π ηv/f_N beyond which a prediction is marked: the fraction of the load beyond the edge of the ball grows to a fifth at five
 times this."""
 
 FIELDS = {
@@ -31,7 +31,7 @@ FIELDS = {
     "friction_coefficient_boundary": "boundary",
     "friction_coefficient_couette": "couette",
     "friction_coefficient_pressure_flow": "pressure_flow",
-    "asperity_load_share": "asperity_load_share",
+    "asperity_load_fraction": "asperity_load_fraction",
     "minimum_film_thickness": "minimum_film",
     "central_film_thickness": "central_film",
 }
@@ -117,8 +117,10 @@ def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.boo
     modulus = skin_of(inputs).contact_modulus
     cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)
     with np.errstate(invalid="ignore"):
-        share = 3 * np.pi * products * inputs["velocity_shift_factor"] / np.asarray(cylinder.load_per_length)
-        return {"film_near_inlet": share > NOTABLE_FILM, "film_beyond_inlet": share > THICKEST_FILM}
+        fraction = (
+            3 * np.pi * products * inputs["velocity_shift_factor"] / np.asarray(cylinder.load_per_length)
+        )
+        return {"film_near_inlet": fraction > NOTABLE_FILM, "film_beyond_inlet": fraction > THICKEST_FILM}
 
 
 def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:

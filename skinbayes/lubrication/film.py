@@ -46,7 +46,7 @@ class LubricatedFilms(NamedTuple):
     asperity_pressure : p_a(x), Pa, shape ``(K, N)``
     couette : friction coefficient of the shear flow, ∫φ ηv/u dx/f_N, dimensionless, shape ``(K,)``
     pressure_flow : friction coefficient of the pressure flow, ½∫u dp_f/f_N, dimensionless, shape ``(K,)``
-    asperity_load_share : load carried by asperities over load, dimensionless, shape ``(K,)``
+    asperity_load_fraction : load carried by asperities over load, dimensionless, shape ``(K,)``
     minimum_film : smallest ū, m, shape ``(K,)``
     central_film : ū under the middle of the cylinder, m, shape ``(K,)``
     lubrication_number : λ = 6 η v Rc²/(b³ p_H), dimensionless, shape ``(K,)``
@@ -59,7 +59,7 @@ class LubricatedFilms(NamedTuple):
     asperity_pressure: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    asperity_load_share: FloatArray
+    asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
     lubrication_number: FloatArray
@@ -108,7 +108,7 @@ def lubricated_films(
     Notes
     -----
     The parabola and the liquid are continued to both sides without end: shear stress far out is counted. The drag of the
-    cavity is that of the share θ of its width that is liquid, ``ηvθ/u`` with θu constant. The reference pressure is that of
+    cavity is that of the fraction θ of its width that is liquid, ``ηvθ/u`` with θu constant. The reference pressure is that of
     the cavity. Nothing is said about the range of validity here; see `stribeck_curve`.
 
     Where λ is so small that the fluid carries less than about 1e-7 of the load, the fluid's part is scaled in proportion to
@@ -161,7 +161,7 @@ def lubricated_films(
         separation=film * height,
         fluid_pressure=fluid * (hertz.maximum_pressure * fainter)[:, None],
         asperity_pressure=carried * hertz.maximum_pressure,
-        asperity_load_share=1 - fainter * (1 - carried @ grid.weight / LOAD),
+        asperity_load_fraction=1 - fainter * (1 - carried @ grid.weight / LOAD),
         couette=wanted / (3 * np.pi) * slope * drag.couette,
         pressure_flow=fainter * slope / np.pi * drag.pressure_flow,
         minimum_film=film.min(axis=1) * height,

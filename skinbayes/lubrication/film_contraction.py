@@ -22,9 +22,9 @@ from skinbayes.lubrication.film_axes import Scales, film_scales
 from skinbayes.lubrication.film_reference import SmoothFilms
 from skinbayes.lubrication.film_table import ANCHORS, FASTEST, SLOWEST, FilmTable
 
-CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE = range(6)
+CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
 _REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
-_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, SHARE: 0.0}
+_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
 
 
@@ -114,7 +114,7 @@ class _Ends:
     """Continuation beyond the slowest and the fastest speed of a table.
 
     Slow: the fluid acts in proportion to λ, so that ``ln Y = ln Y0 + s ΔL + (Y0′ − s)(e^ΔL − 1)`` with the limiting power s.
-    Fast: boundary term and load share fall on with the slope they have; the others are those of the smooth ball.
+    Fast: boundary term and load fraction fall on with the slope they have; the others are those of the smooth ball.
     """
 
     def __init__(self, films: ContractedFilms, position: FloatArray, log_number: FloatArray) -> None:

@@ -21,11 +21,11 @@ from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_
 from skinbayes.lubrication.film_axes import FilmAxes, film_axes, film_parameters, range_logarithms
 from skinbayes.roughness.spectrum import PowerSpectrum
 
-CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE = range(6)
-"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load share of the asperities."""
+CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
+"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load fraction of asperities."""
 
 HALF, FAINT = 0.5, 1e-3
-"""Load shares of the asperities at the two lubrication numbers that a table counts speeds from."""
+"""Load fractions of the asperities at the two lubrication numbers that a table counts speeds from."""
 
 _MORE_NODES = (0, 17, 34)  # tried one after the other where a film is not found
 _THINNEST = (
@@ -175,9 +175,9 @@ class Ball:
             area = relative_contact_area(
                 films.asperity_pressure, self.twice_variance, area_correction=self.surface.area_correction
             )
-            # 1 − (1 − share) has no digits where the share is small
+            # 1 − (1 − fraction) has no digits where the fraction is small
             carried = films.asperity_pressure @ films.load_weight / self.load_per_length
-            share = np.where(films.asperity_load_share > 0.5, films.asperity_load_share, carried)
+            fraction = np.where(films.asperity_load_fraction > 0.5, films.asperity_load_fraction, carried)
             found = np.array(
                 [
                     films.central_film / height,
@@ -185,7 +185,7 @@ class Ball:
                     films.couette * 3 * np.pi / slope / number,
                     films.pressure_flow * np.pi / slope,
                     films.minimum_film / height,
-                    np.maximum(share, _LEAST),
+                    np.maximum(fraction, _LEAST),
                 ]
             )
             if np.all(found > 0):
@@ -205,8 +205,8 @@ class Ball:
         rough = np.log(max(law.separation_at(1.0), _THINNEST * law.decay_length))
         # a regression over balls and skins, good to half a unit; the speeds reach far beyond
         log_number = 2.4 + 1.85 * rough + 0.46 * (tail - rough) + _ANCHOR_SPEEDS
-        share = self.outputs(log_number, _ANCHOR_NODES)[SHARE]
-        odds = share - np.log(np.maximum(-np.expm1(share), 1e-16))
+        fraction = self.outputs(log_number, _ANCHOR_NODES)[FRACTION]
+        odds = fraction - np.log(np.maximum(-np.expm1(fraction), 1e-16))
         wanted = [np.log(FAINT / (1 - FAINT)), np.log(HALF / (1 - HALF))]
         useful = np.abs(odds) < _LARGEST_ODDS
         faint, half = PchipInterpolator(odds[useful][::-1], log_number[useful][::-1])(wanted).tolist()

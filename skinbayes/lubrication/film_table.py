@@ -36,7 +36,7 @@ class FilmTable:
     coefficients : dimensionless, shape ``(n1, …, nA, 2 + 6 (S + 2))``; Chebyshev coefficients along the axes of the
         anchors and of the B-spline coefficients of the six outputs
     speeds : S, number of speeds, dimensionless
-    smooth : films of the smooth ball, which the outputs but the boundary term and the load share are relative to
+    smooth : films of the smooth ball, which the outputs but the boundary term and the load fraction are relative to
     held_out : median, 99th percentile and largest relative error of the friction coefficient at random places,
         dimensionless, shape ``(3,)``
     held_out_count : number of these places, dimensionless

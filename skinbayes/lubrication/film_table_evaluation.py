@@ -16,9 +16,9 @@ from skinbayes.lubrication.film_contraction import (
     BOUNDARY,
     CENTRAL,
     COUETTE,
+    FRACTION,
     MINIMUM,
     PRESSURE_FLOW,
-    SHARE,
     ContractedFilms,
     contract,
 )
@@ -34,7 +34,7 @@ _COEFFICIENTS = (
 _STILL = -1e4  # ln of a speed of 0
 _FRICTION, _EVERYTHING = (
     (BOUNDARY, COUETTE, PRESSURE_FLOW),
-    (CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, SHARE),
+    (CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION),
 )
 
 
@@ -47,7 +47,7 @@ class TabulatedFriction(NamedTuple):
     boundary : shear stress of the areas of real contact, dimensionless
     couette : shear flow of the liquid, dimensionless
     pressure_flow : pressure flow of the liquid, dimensionless
-    asperity_load_share : share of the load that asperities carry, dimensionless; nan if not asked for
+    asperity_load_fraction : fraction of the load that asperities carry, dimensionless; nan if not asked for
     minimum_film : smallest mean separation, m; nan if not asked for
     central_film : mean separation under the middle of the ball, m; nan if not asked for
     strain : b/Rc of the Hertz contact, dimensionless
@@ -60,7 +60,7 @@ class TabulatedFriction(NamedTuple):
     boundary: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    asperity_load_share: FloatArray
+    asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
     strain: FloatArray
@@ -90,7 +90,7 @@ def tabulated_friction(
         scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the theory is evaluated at a ηv
-    everything : also give films and load share
+    everything : also give films and load fraction
     thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
@@ -166,7 +166,7 @@ def tabulated_friction_of_liquids(
         scalar or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
     frictional_shear_stress : σ_f, Pa, ≥ 0, broadcasts
     velocity_shift_factor : a, dimensionless, > 0, broadcasts; the shear rate is that of the speed without it
-    everything : also give films and load share
+    everything : also give films and load fraction
     thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
@@ -307,7 +307,7 @@ def _friction(
         boundary,
         couette,
         pressure,
-        np.minimum(np.exp(logs[SHARE]), 1.0) + missing if everything else nothing,
+        np.minimum(np.exp(logs[FRACTION]), 1.0) + missing if everything else nothing,
         np.exp(logs[MINIMUM] + scales.height) + missing if everything else nothing,
         np.exp(logs[CENTRAL] + scales.height) + missing if everything else nothing,
         np.broadcast_to(np.exp(scales.strain), good.shape),

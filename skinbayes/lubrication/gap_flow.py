@@ -53,7 +53,7 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
     Parameters
     ----------
     gap : u where the surfaces do not touch, m, > 0, shape ``(K,)``
-    probability : share of the nominal area with that gap, dimensionless, ≥ 0, shape ``(K,)``; what is missing to 1 is contact
+    probability : fraction of the nominal area with that gap, dimensionless, ≥ 0, shape ``(K,)``; what is missing to 1 is contact
 
     Returns
     -------
@@ -77,24 +77,24 @@ def gap_flow_factors(gap: ArrayLike, probability: ArrayLike) -> GapFactors:
     >>> print(*(f"{factor:.4g}" for factor in gap_flow_factors([1e-6, 2e-6], [0.5, 0.5])))
     0.8381 2.388e-07 1.279 0.8408
     """
-    u, share = np.asarray(gap, dtype=np.float64), np.asarray(probability, dtype=np.float64)
-    if not (np.isfinite(u) & (u > 0) & (share >= 0)).all() or share.sum() > 1 + _ROUNDING:
+    u, fraction = np.asarray(gap, dtype=np.float64), np.asarray(probability, dtype=np.float64)
+    if not (np.isfinite(u) & (u > 0) & (fraction >= 0)).all() or fraction.sum() > 1 + _ROUNDING:
         return GapFactors(np.nan, np.nan, np.nan, np.nan)
-    u, share = u[share > 0], share[share > 0]
-    mean = float(share @ u)
+    u, fraction = u[fraction > 0], fraction[fraction > 0]
+    mean = float(fraction @ u)
     relative = u / mean
-    cube, contact = relative**3, 1 - float(share.sum())
+    cube, contact = relative**3, 1 - float(fraction.sum())
 
     def miss(log_s: float) -> float:
         s = np.exp(log_s)
-        return float(share @ (2 * s / (cube + s))) + 2 * contact - 1
+        return float(fraction @ (2 * s / (cube + s))) + 2 * contact - 1
 
     if contact >= 0.5:
-        return GapFactors(0.0, mean, float(share @ (1 / relative) + 3 * (share @ (1 / relative))), 0.0)
+        return GapFactors(0.0, mean, float(fraction @ (1 / relative) + 3 * (fraction @ (1 / relative))), 0.0)
     low, high = np.log(cube.min()) - 40.0, np.log(cube.max()) + 40.0
     s = float(np.exp(brentq(miss, low, high, xtol=1e-13))) if miss(low) < 0 else 0.0
-    drag = float(share @ (2 * s * relative / (cube + s)))
-    stress = float(share @ (1 / relative) + 3 * (share @ (relative * (relative - drag) / (cube + s))))
+    drag = float(fraction @ (2 * s * relative / (cube + s)))
+    stress = float(fraction @ (1 / relative) + 3 * (fraction @ (relative * (relative - drag) / (cube + s))))
     return GapFactors(s, (1 - drag) * mean, stress, drag)
 
 
@@ -197,12 +197,12 @@ def tabulated_flow_factors(
             f"Flow factors need skin and roughness that are possible, and gaps wider than ten times the smallest, {least:g} m."
         )
     edges = np.geomspace(least, widest, _GAPS)
-    share, volume = (np.diff(part, axis=-1) for part in (gaps.cumulative(edges), gaps.film(edges)))
-    factors = [_of_cells(share[place], volume[place]) for place in kept]
+    fraction, volume = (np.diff(part, axis=-1) for part in (gaps.cumulative(edges), gaps.film(edges)))
+    factors = [_of_cells(fraction[place], volume[place]) for place in kept]
     return TabulatedFlowFactors(mean[kept], tuple(factors))
 
 
-def _of_cells(share: FloatArray, volume: FloatArray) -> GapFactors:
+def _of_cells(fraction: FloatArray, volume: FloatArray) -> GapFactors:
     """Factors of gaps given as area and volume of narrow classes."""
-    filled = share > 1e-14
-    return gap_flow_factors(volume[filled] / share[filled], share[filled])
+    filled = fraction > 1e-14
+    return gap_flow_factors(volume[filled] / fraction[filled], fraction[filled])

@@ -27,7 +27,7 @@ Transport = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray, Flo
 LOAD = np.pi / 2
 """∫P dX."""
 
-_TOLERANCE, _SMALLEST_SHARE = 1e-6, 0.25
+_TOLERANCE, _SMALLEST_FRACTION = 1e-6, 0.25
 _TINY = 1e-14
 
 
@@ -73,9 +73,11 @@ class Solver:
             relative = rise / np.maximum(film, _TINY)
             # films may fall to a quarter in one step; a film below zero at the start is left to rise
             fall = relative.min()
-            share = 1.0 if fall > _SMALLEST_SHARE - 1 or film.min() <= 0 else (_SMALLEST_SHARE - 1) / fall
-            pressure, approach = pressure + share * change[:-1], approach + share * change[-1]
-            if share == 1 and np.abs(relative).max() < _TOLERANCE and np.array_equal(full, full_before):
+            fraction = (
+                1.0 if fall > _SMALLEST_FRACTION - 1 or film.min() <= 0 else (_SMALLEST_FRACTION - 1) / fall
+            )
+            pressure, approach = pressure + fraction * change[:-1], approach + fraction * change[-1]
+            if fraction == 1 and np.abs(relative).max() < _TOLERANCE and np.array_equal(full, full_before):
                 return FilmState(pressure, float(approach)), step
             full_before = full
         return state, -1
@@ -98,10 +100,13 @@ class Solver:
         conductance = conduct * excess / grid.spacing
         flow = number * drag - conduct * excess * gradient
         turn = number * drag_slope - conduct_slope * excess * gradient
-        pull = conduct * gradient / middle
-        low_share, high_share = np.square(middle / low) / 2, np.square(middle / high) / 2  # ∂H̃/∂H at the ends
-        at_low = turn * low_share - pull * (0.5 - excess * low_share)
-        at_high = turn * high_share - pull * (0.5 - excess * high_share)
+        pressure_flow = conduct * gradient / middle
+        low_fraction, high_fraction = (
+            np.square(middle / low) / 2,
+            np.square(middle / high) / 2,
+        )  # ∂H̃/∂H at the ends
+        at_low = turn * low_fraction - pressure_flow * (0.5 - excess * low_fraction)
+        at_high = turn * high_fraction - pressure_flow * (0.5 - excess * high_fraction)
         left, right = conductance[:-1], conductance[1:]
         scale = 1 / (left + right)
         imbalance = (flow[1:] - flow[:-1]) * scale

@@ -78,9 +78,9 @@ def thinned_viscosity(
     )
     with np.errstate(all="ignore"):
         possible = (eta > 0) & (rate >= 0) & (constant > 0) & (power >= 0)
-        share = eta / constant * rate**power
+        fraction = eta / constant * rate**power
         # where next to nothing is left of η0, B γ̇^-n is
-        viscosity = np.where(share < 1e100, eta / (1 + share), constant / rate**power)
+        viscosity = np.where(fraction < 1e100, eta / (1 + fraction), constant / rate**power)
         return np.where(possible, viscosity, np.nan)[()]
 
 
@@ -129,8 +129,8 @@ class ShearThinning:
     def relative(self, shear_rate: FloatArray) -> tuple[FloatArray, FloatArray]:
         """η/η0 and d ln η/d ln γ̇, dimensionless, at shear rates in 1/s."""
         with np.errstate(over="ignore"):
-            share = self.low_shear_viscosity / self.scale * shear_rate**self.exponent
-        thinning = 1 / (1 + share)
+            fraction = self.low_shear_viscosity / self.scale * shear_rate**self.exponent
+        thinning = 1 / (1 + fraction)
         return thinning, -self.exponent * (1 - thinning)
 
 

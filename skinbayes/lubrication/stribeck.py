@@ -34,7 +34,7 @@ THICKEST_FILM = 0.5
 """Largest 3π ηv/f_N = λ(b/Rc)², dimensionless. A fifth of the load is then carried beyond the edge of the ball, x = −Rc."""
 
 
-SILENT = {
+REASONS_FOR_NO_PREDICTION = {
     "impossible": "an input is not physical",
     "too_strained": "the contact is too wide for the ball (b/Rc too large)",
     "film_beyond_ball": "the film is thicker than the inlet of the ball (3π ηv/f_N too large)",
@@ -57,7 +57,7 @@ class StribeckCurve:
     boundary : shear stress of the areas of real contact, dimensionless
     couette : shear flow of the liquid, dimensionless
     pressure_flow : pressure flow of the liquid, dimensionless
-    asperity_load_share : share of the load that asperities carry, dimensionless
+    asperity_load_fraction : fraction of the load that asperities carry, dimensionless
     minimum_film : smallest mean separation, m
     central_film : mean separation under the middle of the ball, m
     strain : b/Rc of the Hertz contact, dimensionless, batch shape
@@ -75,7 +75,7 @@ class StribeckCurve:
     boundary: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    asperity_load_share: FloatArray
+    asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
     strain: FloatArray
@@ -94,7 +94,7 @@ class StribeckCurve:
 
     def reasons(self) -> list[str]:
         """Why points are missing or doubtful, one sentence a reason, with the number of points."""
-        said = SILENT | {
+        said = REASONS_FOR_NO_PREDICTION | {
             "strained": f"b/Rc is above {NOTABLE_STRAIN:g}, where Hertz's theory is stretched",
             "largely_strained": f"b/Rc is above {LARGE_STRAIN:g}: the contact is nearly half as wide as the ball, or wider",
             "shear_rate_unmeasured": "the liquid is sheared at rates for which its viscosity was not measured",
@@ -124,7 +124,7 @@ def stribeck_curve(
 
     The ball is replaced by the cylinder of Eq. 9 on the tissue's modulus E1*, the film is that of `lubricated_films` with
     the asperities of the layered surface. ``μ = (1/f_N) [∫ σ_f A(p_a)/A0 dx + ∫ ηv/u dx + ∫ (u/2) dp_f]``: areas of real contact,
-    shear flow and pressure flow. Where A ∝ p the first is ``σ_f A/(A0 p)`` times the load share of the asperities.
+    shear flow and pressure flow. Where A ∝ p the first is ``σ_f A/(A0 p)`` times the load fraction of the asperities.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def _one_curve(
         "shear_rate_unmeasured": np.zeros(products.shape, dtype=bool),
     }
     names = (
-        "boundary", "couette", "pressure_flow", "asperity_load_share", "minimum_film", "central_film",
+        "boundary", "couette", "pressure_flow", "asperity_load_fraction", "minimum_film", "central_film",
     )  # fmt: skip
     result |= {name: np.full(products.shape, np.nan) for name in names}
     if solved.any():

@@ -92,10 +92,10 @@ def _extrapolate(trail: list[tuple[float, FilmState]], target: float) -> FilmSta
     pressure: FloatArray | float = 0.0
     approach = 0.0
     for place, state in trail:
-        share = 1.0
+        fraction = 1.0
         for other in places:
             if other != place:
-                share *= (target - other) / (place - other)
-        pressure = pressure + share * state.pressure
-        approach += share * state.approach
+                fraction *= (target - other) / (place - other)
+        pressure = pressure + fraction * state.pressure
+        approach += fraction * state.approach
     return FilmState(np.asarray(pressure), approach)

@@ -87,30 +87,30 @@ def interval(low: float, high: float, unit: str, typical: float | None = None, j
     return f"{number(low / factor)}{joint}{number(high / factor)} {name}".strip()
 
 
-def percent(share: float) -> str:
-    """A share in percent: ``"45 %"``, ``"0.4 %"``, ``"less than 0.1 %"``.
+def percent(fraction: float) -> str:
+    """A fraction in percent: ``"45 %"``, ``"0.4 %"``, ``"less than 0.1 %"``.
 
     Examples
     --------
     >>> percent(0.4512), percent(0.00412), percent(0.0002), percent(0.0), percent(1.0)
     ('45 %', '0.41 %', 'less than 0.1 %', '0 %', '100 %')
     """
-    if 0.0 < share < 1e-3:
+    if 0.0 < fraction < 1e-3:
         return "less than 0.1 %"
-    return f"{number(100.0 * share, 2)} %"
+    return f"{number(100.0 * fraction, 2)} %"
 
 
-def share(count: int, total: int) -> str:
+def fraction(count: int, total: int) -> str:
     """How many of some draws, in percent; none and all of them are said as what the draws can tell.
 
     Examples
     --------
-    >>> share(0, 4000), share(4000, 4000), share(2, 4000), share(1300, 4000)
+    >>> fraction(0, 4000), fraction(4000, 4000), fraction(2, 4000), fraction(1300, 4000)
     ('less than 0.03 %', 'more than 99.97 %', '0.05 %', '32 %')
     """
     if 0 < count < total:
         return f"{number(100.0 * count / total, 2)} %"
-    # the smallest share that so many draws can show, rounded up to one digit
+    # the smallest fraction that so many draws can show, rounded up to one digit
     exponent = floor(log10(100.0 / total) + 1e-12)
     least = ceil(100.0 / total / 10.0**exponent - 1e-9) * 10.0**exponent
     digits = max(0, -exponent)

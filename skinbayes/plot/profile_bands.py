@@ -106,7 +106,7 @@ def curve_at_row(
 def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tuple[str, list[int]]]:
     """Rows that share a curve at the posterior median, and a word for each group."""
     groups: list[tuple[FloatArray, list[int]]] = []
-    alike: dict[tuple[float, ...], list[int]] = {}
+    by_values: dict[tuple[float, ...], list[int]] = {}
     wanted = problem.forward.input_names()
     differing = [
         values[0]
@@ -114,18 +114,18 @@ def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tupl
         if values.shape[-1] > 1 and name != profile.abscissa and name in wanted
     ]
     for row in range(problem.conditions.n_rows):
-        same = alike.setdefault(tuple(float(values[row]) for values in differing), [])
+        same = by_values.setdefault(tuple(float(values[row]) for values in differing), [])
         same.append(row)
     # rows of the same inputs share a curve without it being computed again, and others may still do
-    for alike_rows in _spread_out(alike):
-        grid, curve = curve_at_row(problem, profile, middle, alike_rows[0])
+    for rows_of_one in _spread_out(by_values):
+        grid, curve = curve_at_row(problem, profile, middle, rows_of_one[0])
         both = np.concatenate([grid, curve[0]])
         for known, rows in groups:
             if np.allclose(known, both, rtol=SAME, atol=0.0, equal_nan=True):
-                rows[:] = sorted([*rows, *alike_rows])
+                rows[:] = sorted([*rows, *rows_of_one])
                 break
         else:
-            groups.append((both, list(alike_rows)))
+            groups.append((both, list(rows_of_one)))
     if len(groups) <= MOST_CURVES:
         return [("", rows) for _, rows in groups]
     groups.sort(key=lambda group: float(group[0][np.isfinite(group[0])][-1]))
@@ -133,12 +133,12 @@ def _groups(problem: Problem, profile: Profile, middle: FloatArray) -> list[tupl
     return [(word, rows) for word, (_, rows) in chosen]
 
 
-def _spread_out(alike: dict[tuple[float, ...], list[int]]) -> list[list[int]]:
+def _spread_out(by_values: dict[tuple[float, ...], list[int]]) -> list[list[int]]:
     """Rows of the same inputs, all kinds of them or, of very many, some evenly spaced in the order of their inputs."""
-    if len(alike) <= MOST_KINDS:
-        return list(alike.values())
-    ordered = sorted(alike)
-    return [alike[ordered[i]] for i in np.linspace(0, len(ordered) - 1, MOST_KINDS).round().astype(int)]
+    if len(by_values) <= MOST_KINDS:
+        return list(by_values.values())
+    ordered = sorted(by_values)
+    return [by_values[ordered[i]] for i in np.linspace(0, len(ordered) - 1, MOST_KINDS).round().astype(int)]
 
 
 def _row_text(problem: Problem, names: list[str], rows: list[int], shared: bool) -> str:

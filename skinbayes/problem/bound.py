@@ -16,9 +16,9 @@ from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
-from skinbayes.problem.alike import DistinctRows, distinct_rows
 from skinbayes.problem.batches import as_batch, unbatch
 from skinbayes.problem.covariates import apply_covariates, factor_key
+from skinbayes.problem.deduplicated_rows import DistinctRows, distinct_rows
 from skinbayes.problem.failures import FAILED, explained, without_underflow
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.observations import Observation
@@ -150,14 +150,14 @@ class BoundModel:
             factor and covariates that act on them. Effects of groups are those of the median group, 0.
         """
         batch, single = self._batch(theta)
-        rows, tables, alike = conditions or self.conditions, self.tables, self.alike
+        rows, tables, deduplicated = conditions or self.conditions, self.tables, self.deduplicated
         if conditions is not None:
             curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, rows, self.spec.path)
             tables = replace(tables, flow_curves=curves)
-            alike = distinct_rows(plan_inputs(self.fixed, self.free, rows, self.tied), rows, tables)
+            deduplicated = distinct_rows(plan_inputs(self.fixed, self.free, rows, self.tied), rows, tables)
 
         def piece(part: FloatArray) -> dict[str, FloatArray]:
-            found = self.evaluate(self.inputs(part, conditions), tables, alike)
+            found = self.evaluate(self.inputs(part, conditions), tables, deduplicated)
             shape = (len(part), rows.n_rows)
             return {name: without_underflow(np.broadcast_to(value, shape)) for name, value in found.items()}
 
@@ -246,7 +246,7 @@ class BoundModel:
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
 
     @cached_property
-    def alike(self) -> DistinctRows | None:
+    def deduplicated(self) -> DistinctRows | None:
         """Rows of the data that the forward model need not tell apart; None if all differ."""
         return distinct_rows(self.plan, self.conditions, self.tables, self.input_spread)
 
@@ -254,7 +254,7 @@ class BoundModel:
         self,
         inputs: Mapping[str, FloatArray],
         tables: Tables | None = None,
-        alike: DistinctRows | None = None,
+        deduplicated: DistinctRows | None = None,
     ) -> dict[str, FloatArray]:
         """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them.
 
@@ -262,11 +262,11 @@ class BoundModel:
         """
         tables = self.tables if tables is None else tables
         with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-            if alike is None:
+            if deduplicated is None:
                 predicted = dict(self.model.evaluate(inputs, tables))
             else:
-                distinct = self.model.evaluate(alike.of_inputs(inputs), alike.of_tables(tables))
-                predicted = {name: alike.at_rows(values) for name, values in distinct.items()}
+                distinct = self.model.evaluate(deduplicated.of_inputs(inputs), deduplicated.of_tables(tables))
+                predicted = {name: deduplicated.at_rows(values) for name, values in distinct.items()}
         for name in self.spec.observables:
             for key in ("discrepancy_factor", f"discrepancy_factor[{name}]", factor_key(name)):
                 if key in inputs:

@@ -101,7 +101,7 @@ def check_problem(problem: StatisticalModel, seed: int = 1) -> CheckReport:
 
 def _solved_anew(problem: StatisticalModel) -> bool:
     """Whether a prediction takes hundredths of a second because the model has no table."""
-    return problem.forward.costly and problem.forward.prepare is None
+    return problem.forward.expensive and problem.forward.prepare is None
 
 
 def _setup(problem: StatisticalModel) -> tuple[str, ...]:

@@ -167,7 +167,7 @@ class Likelihood:
     def _predictions(self, theta: FloatArray) -> tuple[Mapping[str, FloatArray], list[FloatArray]]:
         """All inputs, and the prediction of each observation, ``(B, N)``."""
         inputs = self.problem.inputs(theta)
-        found = self.problem.evaluate(inputs, alike=self.problem.alike)
+        found = self.problem.evaluate(inputs, deduplicated=self.problem.deduplicated)
         shape = (len(theta), self.problem.conditions.n_rows)
         return inputs, [np.broadcast_to(found[o.name], shape) for o in self._observations]
 
@@ -182,7 +182,7 @@ class Likelihood:
         """What the known spread of inputs adds to that of an observation, shape ``(B, N)``."""
         problem = self.problem
         return propagated_spread(
-            lambda changed: problem.evaluate(changed, alike=problem.alike)[observation.name],
+            lambda changed: problem.evaluate(changed, deduplicated=problem.deduplicated)[observation.name],
             inputs,
             problem.input_spread,
             observation,

@@ -94,7 +94,9 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
         for key, values in spec.conditions.items()
         if key not in named
     }
-    content["yardsticks"] = [_located(Path(y), path) if y.endswith(".toml") else y for y in spec.yardsticks]
+    content["baseline_models"] = [
+        _located(Path(y), path) if y.endswith(".toml") else y for y in spec.baseline_models
+    ]
     return {path: toml_text(content), **files}
 
 

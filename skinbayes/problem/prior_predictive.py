@@ -14,11 +14,14 @@ if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
 
 SURPRISING = 0.005
-"""A datum with a smaller share of prior predictive draws on one side of it contradicts the priors."""
+"""A datum with a smaller fraction of prior predictive draws on one side of it contradicts the priors."""
 
 
 MOST_NUMBERS = 10_000_000
 """Draws times data that are made at most (80 MB): with more than 2,500 data fewer than 4,000 draws."""
+
+PROBES = 200
+"""Draws of which one must give a finite prediction at all rows before the others are evaluated."""
 
 FEWEST_DRAWS = 1_000
 """Draws that are made with any number of data: fewer could not tell what contradicts the priors."""
@@ -28,7 +31,7 @@ NUMBERS_AT_A_TIME = 1_000_000
 
 @dataclass(frozen=True)
 class PredictedRow:
-    """One datum and the prior predictive distribution at its conditions, SI; ``share_below`` of the draws lie below it."""
+    """One datum and the prior predictive distribution at its conditions, SI; ``fraction_below`` of the draws lie below it."""
 
     label: str
     observable: str
@@ -36,7 +39,7 @@ class PredictedRow:
     q05: float
     median: float
     q95: float
-    share_below: float
+    fraction_below: float
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,9 @@ class PriorPredictive:
     def sentences(self) -> list[str]:
         """What the comparison says, in words."""
         said = []
-        outside = [row.label for row in self.rows if min(row.share_below, 1 - row.share_below) < SURPRISING]
+        outside = [
+            row.label for row in self.rows if min(row.fraction_below, 1 - row.fraction_below) < SURPRISING
+        ]
         within = sum(row.q05 <= row.observed <= row.q95 for row in self.rows)
         said.append(
             f"{within} of {len(self.rows)} data lie inside the 5-95 % range of what the priors predict."
@@ -80,13 +85,21 @@ class PriorPredictive:
     def most_surprising(self, count: int) -> tuple[PredictedRow, ...]:
         """The data, or the ``count`` of them furthest out in what the priors predict, in their order."""
         far = sorted(
-            range(len(self.rows)), key=lambda i: min(self.rows[i].share_below, 1 - self.rows[i].share_below)
+            range(len(self.rows)),
+            key=lambda i: min(self.rows[i].fraction_below, 1 - self.rows[i].fraction_below),
         )
         return tuple(self.rows[i] for i in sorted(far[:count]))
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
         return asdict(self) | {"sentences": self.sentences()}
+
+
+def _unusable(problem: Problem, missing: str) -> InputError:
+    names = " or ".join(problem.observables)
+    return InputError(
+        f"{problem.spec.path}: no prior draw gives a finite {names}{f'; {missing}' if missing else ''}"
+    )
 
 
 def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> PriorPredictive:
@@ -108,6 +121,9 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     observed = np.asarray(problem.observed)
     draws = min(draws, max(FEWEST_DRAWS, MOST_NUMBERS // len(observed)))
     theta = problem.draw_prior(rng, draws)
+    first, missing = predicted_everywhere(problem, theta[:PROBES])
+    if not first.any():  # more of them would take their time for nothing
+        raise _unusable(problem, missing)
     step = max(1, NUMBERS_AT_A_TIME // len(observed))
     simulated = np.concatenate(
         [problem.simulate(theta[i : i + step], rng) for i in range(0, len(theta), step)]
@@ -115,11 +131,7 @@ def prior_predictive(problem: Problem, seed: int = 1, draws: int = 4000) -> Prio
     finite = np.isfinite(simulated).all(axis=1)
     usable = simulated if finite.all() else simulated[finite]
     if len(usable) == 0:
-        _, missing = predicted_everywhere(problem, problem.draw_prior(rng, 100))
-        reason = f"; {missing}" if missing else ""
-        raise InputError(
-            f"{problem.spec.path}: no prior draw gives a finite {' or '.join(observables)}{reason}"
-        )
+        raise _unusable(problem, missing)
     quantiles, below = np.empty((3, len(observed))), np.empty(len(observed))
     width = max(1, NUMBERS_AT_A_TIME // len(usable))
     for start in range(0, len(observed), width):

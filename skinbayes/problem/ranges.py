@@ -14,7 +14,7 @@ DRAWS = 2000
 """Prior draws looked at."""
 
 BEYOND = 1e-5
-"""Share of the prior of each parameter that lies beyond the range on either side."""
+"""Fraction of the prior of each parameter that lies beyond the range on either side."""
 
 
 def input_ranges(

@@ -46,7 +46,7 @@ MOST_LEVELS = 1_000
 
 
 def _check_count(path: object, count: int, forward: ForwardModel) -> None:
-    most = MOST_ROWS_OF_EXPENSIVE_MODELS if forward.costly else MOST_ROWS
+    most = MOST_ROWS_OF_EXPENSIVE_MODELS if forward.expensive else MOST_ROWS
     if count > most:
         raise InputError(
             f"{path}: {count} rows; expected at most {most} for the forward model '{forward.name}', with which time and memory "

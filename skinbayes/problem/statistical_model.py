@@ -150,9 +150,9 @@ class StatisticalModel(BoundModel):
         return np.repeat([o.noise.logarithmic for o in self.observations], self.conditions.n_rows)
 
     @property
-    def costly(self) -> bool:
-        """Whether a likelihood takes so long that fewer walkers are better: a costly forward model, or very many rows."""
-        return self.forward.costly or self.conditions.n_rows >= MANY_ROWS
+    def expensive(self) -> bool:
+        """Whether a likelihood takes so long that fewer walkers are better: a expensive forward model, or very many rows."""
+        return self.forward.expensive or self.conditions.n_rows >= MANY_ROWS
 
     @cached_property
     def _prior(self) -> LogDensity:

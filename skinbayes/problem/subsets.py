@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.problem.alike import kinds
+from skinbayes.problem.deduplicated_rows import kinds
 from skinbayes.problem.inputs import Conditions
 from skinbayes.statistics.groups import CrossedGroups
 

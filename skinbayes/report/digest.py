@@ -25,10 +25,10 @@ def digest(fit: Fit) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``validity`` (flag to the number of rows flagged in at least 5 % of the draws, the share of all predictions, what it
-        means, and the share of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of each
-        effect, the scale over the noise, the share of the variance), ``ridges`` (pairs of parameters, exponent, the combination
-        that is known and how well) and ``priors`` (parameter to its update by the data). Quantities in SI.
+        ``validity`` (flag to the number of rows flagged in at least 5 % of the draws, the fraction of all predictions, what it
+        means, and the fraction of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of
+        each effect, the scale over the noise, the fraction of the variance), ``ridges`` (pairs of parameters, exponent, the
+        combination that is known and how well) and ``priors`` (parameter to its update by the data). Quantities in SI.
     """
     names = row_names(fit)
     return {

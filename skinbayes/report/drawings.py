@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skinbayes.phrases import plural
 from skinbayes.plot import (
     plot_corner,
     plot_data,
@@ -25,7 +26,6 @@ from skinbayes.plot.predictive import observables
 from skinbayes.plot.profile import profile_abscissas
 from skinbayes.plot.rows import group_columns, row_abscissa, row_predictions, telling_columns
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.words import plural
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.phrases import and_list, plural
 from skinbayes.plot.numbers import interval, number, percent, quantity
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.rows import effect_draws, group_columns
-from skinbayes.report.words import and_list, plural
 from skinbayes.statistics.noise_families import noise_family
 from skinbayes.vocabulary import lookup
 
@@ -47,7 +47,7 @@ class GroupFinding:
     scale : 5, 50 and 95 % quantiles of the standard deviation of the effects; three times the value if it is fixed
     effects : level to the same quantiles of its effect
     over_noise : the same quantiles of the scale over the width of the noise; None if that is not at hand
-    variance_share : share of the variance that the theory leaves, posterior mean; None if the noise is not at hand
+    variance_fraction : fraction of the variance that the theory leaves, posterior mean; None if the noise is not at hand
     mean : the same quantiles of the mean of the effects of all levels, which should be near 0
     """
 
@@ -56,7 +56,7 @@ class GroupFinding:
     scale: Triple
     effects: dict[str, Triple]
     over_noise: Triple | None
-    variance_share: float | None
+    variance_fraction: float | None
     mean: Triple
 
     @property
@@ -71,7 +71,7 @@ class GroupFinding:
             "logarithmic": self.logarithmic,
             "scale": dict(zip(keys, self.scale, strict=True)),
             "scale_over_noise": self.over_noise and dict(zip(keys, self.over_noise, strict=True)),
-            "variance_share": self.variance_share,
+            "variance_fraction": self.variance_fraction,
             "mean": dict(zip(keys, self.mean, strict=True)),
             "effects": {level: dict(zip(keys, found, strict=True)) for level, found in self.effects.items()},
         }
@@ -88,12 +88,12 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
     found = []
     for column in columns:
         levels, draws = effect_draws(fit, column)
-        over_noise = share = None
+        over_noise = fraction = None
         if noise is not None:
             chosen, width = noise
             over_noise = _triple(scales[column][chosen] / width)
             whole = width**2 + sum(scales[other][chosen] ** 2 for other in columns)
-            share = float(np.mean(scales[column][chosen] ** 2 / whole))
+            fraction = float(np.mean(scales[column][chosen] ** 2 / whole))
         found.append(
             GroupFinding(
                 column,
@@ -101,7 +101,7 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
                 _scale(fit, column, scales[column]),
                 {level: _triple(draws[:, i]) for i, level in enumerate(levels)},
                 over_noise,
-                share,
+                fraction,
                 _triple(draws.mean(axis=1)),
             )
         )
@@ -120,13 +120,13 @@ def group_sentences(fit: Fit) -> list[str]:
     many = [plural(finding.column) for finding in findings]
     others = [f"those of {name} {factor} times" for name, factor in zip(many[1:], times[1:], strict=True)]
     compared = and_list([f"The effects of {many[0]} are {times[0]} times as wide as that", *others])
-    shares = [finding.variance_share or 0.0 for finding in findings]
-    parts = [f"{percent(share)} between {name}" for name, share in zip(many, shares, strict=True)]
+    fractions = [finding.variance_fraction or 0.0 for finding in findings]
+    parts = [f"{percent(fraction)} between {name}" for name, fraction in zip(many, fractions, strict=True)]
     logarithmic = findings[0].logarithmic
     said.append(
         f"Beside the noise: single values scatter about all this by {_size(fit, middle, logarithmic)} "
         f"(90 %: {_sizes(fit, low, high, logarithmic)}). {compared}. Of the variance that the model leaves there lies "
-        f"{and_list([*parts, f'{percent(1.0 - sum(shares))} in single values'])}."
+        f"{and_list([*parts, f'{percent(1.0 - sum(fractions))} in single values'])}."
     )
     return said
 

@@ -16,12 +16,12 @@ from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.validity import validity_sentences
 
 if TYPE_CHECKING:
-    from skinbayes.comparison import Yardsticks
+    from skinbayes.comparison import AgainstBaselines
     from skinbayes.fit import Fit
     from skinbayes.problem.check import CheckReport
 
 
-def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> Path:
+def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None = None) -> Path:
     """Write one self-contained HTML page about a fit.
 
     Figures are inside the page; nothing is loaded from anywhere and no script runs. Everything that comes from data
@@ -31,7 +31,7 @@ def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> 
     ----------
     fit : any fit; without its problem the page has neither the curves of the model nor the check of what data can tell
     path : the file to write
-    yardsticks : the fit beside its yardsticks, from :func:`skinbayes.comparison.against_yardsticks`, if there are any
+    baseline_models : the fit beside its baseline models, from :func:`skinbayes.comparison.against_baselines`, if there are any
 
     Returns
     -------
@@ -46,7 +46,7 @@ def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> 
         The disk is full.
     """
     path = Path(path)
-    page = render(fit, yardsticks)
+    page = render(fit, baseline_models)
     try:
         write_atomically(path, page.encode())
     except OSError as error:
@@ -54,7 +54,7 @@ def write_report(fit: Fit, path: Path, yardsticks: Yardsticks | None = None) -> 
     return path
 
 
-def render(fit: Fit, yardsticks: Yardsticks | None = None) -> str:
+def render(fit: Fit, baseline_models: AgainstBaselines | None = None) -> str:
     """The page as text."""
     import jinja2
 
@@ -71,10 +71,10 @@ def render(fit: Fit, yardsticks: Yardsticks | None = None) -> str:
         "symbols": lambda text: safe(symbols(text)),
         "links": lambda text: safe(links(text)),
     }
-    return environment.get_template("page.html").render(context(fit, yardsticks))
+    return environment.get_template("page.html").render(context(fit, baseline_models))
 
 
-def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
+def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[str, Any]:
     """Everything the template shows, as text."""
     check = None if fit.problem is None else fit.problem.check()
     shown, folded = tables.derived_rows(fit)
@@ -109,7 +109,7 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
         "groups": groups,
         "effects": effect_rows(fit),
         "validity": validity_sentences(fit),
-        **_yardsticks(yardsticks),
+        **_baselines(baseline_models),
         "agreement": quality.agreement(fit),
         "convergence": [sentences.with_symbols(fit, sentence) for sentence in quality.convergence(fit)],
         "assumptions": _assumptions(fit, check),
@@ -122,19 +122,19 @@ def context(fit: Fit, yardsticks: Yardsticks | None = None) -> dict[str, Any]:
     }
 
 
-def _yardsticks(yardsticks: Yardsticks | None) -> dict[str, Any]:
-    """Sentences and table of the yardsticks; what makes the numbers themselves doubtful stands apart."""
-    if yardsticks is None:
-        return {"loses": [], "yardsticks": None}
-    said = yardsticks.sentences()
+def _baselines(baseline_models: AgainstBaselines | None) -> dict[str, Any]:
+    """Sentences and table of the baseline models; what makes the numbers themselves doubtful stands apart."""
+    if baseline_models is None:
+        return {"loses": [], "baseline_models": None}
+    said = baseline_models.sentences()
     doubts = [sentence for sentence in said if "importance sampling" in sentence]
     return {
         "loses": [sentence for sentence in said if " LOSES to " in sentence],
-        "yardsticks": {
+        "baseline_models": {
             "sentences": [sentence for sentence in said if sentence not in doubts],
             "doubts": doubts,
-            "headers": yardsticks.headers(),
-            "rows": yardsticks.rows(),
+            "headers": baseline_models.headers(),
+            "rows": baseline_models.rows(),
         },
     }
 

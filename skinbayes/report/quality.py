@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.plot.numbers import number, percent, quantity, share
+from skinbayes.phrases import and_list, plural, sample_size
+from skinbayes.plot.numbers import fraction, number, percent, quantity
 from skinbayes.plot.predictive import (
     datum_names,
     observables,
@@ -16,7 +17,6 @@ from skinbayes.plot.predictive import (
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.words import and_list, plural, sample_size
 from skinbayes.statistics.agreement import Agreement
 from skinbayes.statistics.agreement import examine as agreement_of
 from skinbayes.statistics.noise_families import noise_family
@@ -34,8 +34,8 @@ MOST_NAMED = 6
 def examine(fit: Fit) -> Agreement:
     """Hold the data of a fit against its posterior predictive draws."""
     observed = observed_values(fit)
-    alike = len(observed) >= FEW and len(observables(fit)) == 1
-    return agreement_of(observed, predictive_draws(fit), alike)
+    of_one_kind = len(observed) >= FEW and len(observables(fit)) == 1
+    return agreement_of(observed, predictive_draws(fit), of_one_kind)
 
 
 def verdict(fit: Fit) -> list[str]:
@@ -99,8 +99,8 @@ def agreement(fit: Fit) -> list[str]:
     else:
         said.append("No single row lies where the fitted model would hardly ever put it.")
     said += [
-        f"The {name} of the data is {'not ' if name in found.missed else ''}reproduced: {share(above, total)} of simulated data "
-        "sets have a larger one (posterior predictive p-value; near 0 % or 100 % means misfit)."
+        f"The {name} of the data is {'not ' if name in found.missed else ''}reproduced: {fraction(above, total)} of simulated "
+        "data sets have a larger one (posterior predictive p-value; near 0 % or 100 % means misfit)."
         for name, (above, total) in found.statistics.items()
     ]
     if group_columns(fit):

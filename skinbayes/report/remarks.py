@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from skinbayes.phrases import and_list
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import quality, sentences
 from skinbayes.report.opening import is_scatter
-from skinbayes.report.words import and_list
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit

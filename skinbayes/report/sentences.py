@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.diagnose.rule import MUCH, SOMETHING, UNCHANGED
-from skinbayes.plot.numbers import interval, number, percent, quantity, share
+from skinbayes.plot.numbers import fraction, interval, number, percent, quantity
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.opening import is_scatter
@@ -146,7 +146,7 @@ def disagreements(fit: Fit) -> list[str]:
         side = "below" if update.prior_quantile < 0.5 else "above"
         before = fit.draws(update.name, "prior")
         low, high = np.quantile(before, [0.05, 0.95])
-        beyond = share(round(tail * len(before)), len(before))
+        beyond = fraction(round(tail * len(before)), len(before))
         beyond = beyond if beyond.startswith("less") else f"only {beyond}"
         said.append(
             f"{title_name(fit, update.name)}: half of the posterior lies {side} "

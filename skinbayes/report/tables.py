@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skinbayes.phrases import sample_size
 from skinbayes.plot.numbers import interval, number, quantity
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.words import sample_size
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:

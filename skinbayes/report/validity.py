@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.phrases import and_list, plural
 from skinbayes.plot.numbers import percent
 from skinbayes.plot.predictive import row_names
 from skinbayes.plot.rows import label_columns, levels_of_rows
-from skinbayes.report.words import and_list, plural
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 SELDOM = 0.05
-"""A row flagged in a smaller share of the draws is not counted."""
+"""A row flagged in a smaller fraction of the draws is not counted."""
 
 MOST_NAMED = 8
 """Rows that are named one by one."""
@@ -36,26 +36,26 @@ class Flag:
     ----------
     name : of the flag
     meaning : what it says, a clause
-    shares : share of the posterior draws in which each row is flagged, shape ``(N,)``
+    fractions : fraction of the posterior draws in which each row is flagged, shape ``(N,)``
     """
 
     name: str
     meaning: str
-    shares: FloatArray
+    fractions: FloatArray
 
     @property
     def flagged(self) -> NDArray[np.bool_]:
         """Rows flagged in at least 5 % of the draws."""
-        return np.asarray(self.shares >= SELDOM)
+        return np.asarray(self.fractions >= SELDOM)
 
     def to_dict(self, names: Sequence[str]) -> dict[str, Any]:
         """Everything as plain types."""
         rows = np.flatnonzero(self.flagged)
         return {
             "rows": len(rows),
-            "share": float(self.shares.mean()),
+            "fraction": float(self.fractions.mean()),
             "meaning": self.meaning,
-            "share_by_row": {names[int(row)]: float(self.shares[row]) for row in rows},
+            "fraction_by_row": {names[int(row)]: float(self.fractions[row]) for row in rows},
         }
 
 
@@ -73,7 +73,7 @@ def flags(fit: Fit) -> list[Flag]:
         )
         for name, variable in group.data_vars.items()
     ]
-    return sorted(found, key=lambda flag: -float(flag.shares.sum()))
+    return sorted(found, key=lambda flag: -float(flag.fractions.sum()))
 
 
 def validity_sentences(fit: Fit) -> list[str]:
@@ -88,11 +88,11 @@ def validity_sentences(fit: Fit) -> list[str]:
         rows = np.flatnonzero(flag.flagged)
         if not len(rows):
             continue
-        mostly = int((flag.shares > 0.5).sum())
+        mostly = int((flag.fractions > 0.5).sum())
         inside = "all" if mostly == len(rows) else str(mostly) if mostly else "none"
         said.append(
             f"{flag.meaning[:1].upper()}{flag.meaning[1:]}: {len(rows)} of {len(names)} rows, {inside} of them in more than half "
-            f"of the posterior; {percent(float(flag.shares.mean()))} of the posterior predictions of all rows. "
+            f"of the posterior; {percent(float(flag.fractions.mean()))} of the posterior predictions of all rows. "
             f"{_which(fit, names, rows)}"
         )
     quiet = [flag.meaning for flag in found if not flag.flagged.any()]
@@ -156,17 +156,17 @@ def _whole(column: str, whole: list[str], levels: list[str]) -> str:
 
 
 def _mostly(members: dict[str, dict[str, set[int]]], left: set[int]) -> str:
-    """The levels with the largest shares of some rows, of the column that parts these best."""
+    """The levels with the largest fractions of some rows, of the column that parts these best."""
 
-    def share(column: str, level: str) -> float:
+    def fraction(column: str, level: str) -> float:
         return len(members[column][level] & left) / len(members[column][level])
 
-    column = max(members, key=lambda name: float(np.var([share(name, level) for level in members[name]])))
-    levels = sorted(members[column], key=lambda level: -share(column, level))[:MOST_LEVELS]
+    column = max(members, key=lambda name: float(np.var([fraction(name, level) for level in members[name]])))
+    levels = sorted(members[column], key=lambda level: -fraction(column, level))[:MOST_LEVELS]
     return and_list(
         [
             f"{level} ({len(members[column][level] & left)} of {len(members[column][level])})"
             for level in levels
-            if share(column, level) > 0.0
+            if fraction(column, level) > 0.0
         ]
     )

@@ -38,16 +38,16 @@ class ProductRule:
         self._breaks = np.union1d(np.log(table), edges)
         left, right = self._breaks[:-1], self._breaks[1:]
         self._panel = np.clip(np.searchsorted(edges, (left + right) / 2) - 1, 0, count - 1)
-        shares = self._shares(left, right, self._panel)
+        fractions = self._fractions(left, right, self._panel)
         starts = np.searchsorted(self._panel, np.arange(count))
-        per_panel = np.add.reduceat(shares, starts, axis=0)
+        per_panel = np.add.reduceat(fractions, starts, axis=0)
         self.full: FloatArray = per_panel.reshape(-1)
         # what lies left of each cell within its panel
-        before = np.cumsum(shares, axis=0) - shares
+        before = np.cumsum(fractions, axis=0) - fractions
         self._before = before - before[starts][self._panel]
         self._cell_count = left.size
 
-    def _shares(self, left: FloatArray, right: FloatArray, panel: FloatArray) -> FloatArray:
+    def _fractions(self, left: FloatArray, right: FloatArray, panel: FloatArray) -> FloatArray:
         """Integrals of the Lagrange polynomials of ``panel`` against q³ C from ``left`` to ``right`` (of ln q)."""
         points = left[..., None] + (right - left)[..., None] * _CELL_NODES
         q = np.exp(points)
@@ -61,7 +61,7 @@ class ProductRule:
             end = np.clip(np.log(wavevector), self._breaks[0], self._breaks[-1])
         cell = np.clip(np.searchsorted(self._breaks, end, side="right") - 1, 0, self._cell_count - 1)
         panel = self._panel[cell]
-        partial = self._before[cell] + self._shares(self._breaks[cell], end, panel)
+        partial = self._before[cell] + self._fractions(self._breaks[cell], end, panel)
         per_panel = self.full.reshape(-1, _PANEL_NODES.size)
         panels = np.arange(per_panel.shape[0])[:, None]
         here = panel[..., None, None]

@@ -29,7 +29,7 @@ class EnsembleState:
 
 
 @dataclass(frozen=True)
-class Block:
+class EnsembleSteps:
     """Consecutive steps of one ensemble.
 
     Attributes
@@ -82,7 +82,9 @@ class Density:
         return value
 
 
-def advance(target: Target, state: EnsembleState, steps: int, vectorize: bool, moves: MoveFactory) -> Block:
+def advance(
+    target: Target, state: EnsembleState, steps: int, vectorize: bool, moves: MoveFactory
+) -> EnsembleSteps:
     """Move an ensemble by ``steps`` steps.
 
     The result depends on the arguments only, so it does not matter in which process, after which interruption or
@@ -115,7 +117,7 @@ def advance(target: Target, state: EnsembleState, steps: int, vectorize: bool, m
     for step, current in enumerate(made):
         positions[step] = current.coords
         log_density[step] = current.log_prob
-    return Block(
+    return EnsembleSteps(
         positions,
         log_density,
         sampler.random_state,

@@ -50,7 +50,7 @@ class Chains:
         return slice(self.report.burn_in, self.steps)
 
     def acceptance_fraction(self) -> FloatArray:
-        """Share of accepted moves of each ensemble after burn-in, shape ``(ensembles,)``."""
+        """Fraction of accepted moves of each ensemble after burn-in, shape ``(ensembles,)``."""
         kept = self.positions[:, self.kept]
         if kept.shape[1] < 2:
             return np.zeros(len(kept))

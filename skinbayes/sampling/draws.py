@@ -83,12 +83,12 @@ class Draws:
         chains, length, dimension = self.samples.shape
         if self.log_weights is None:
             return self.samples[:, :: -(-length * chains // most)] if length * chains > most else self.samples
-        share = np.exp(self.log_weights.ravel() - self.log_weights.max())
-        count = min(most, share.size)
+        fraction = np.exp(self.log_weights.ravel() - self.log_weights.max())
+        count = min(most, fraction.size)
         places = (rng.random() + np.arange(count)) / count
-        edges = np.cumsum(share) / share.sum()
+        edges = np.cumsum(fraction) / fraction.sum()
         # the last edge may fall short of 1 by rounding
-        chosen = rng.permutation(np.minimum(np.searchsorted(edges, places, "right"), share.size - 1))
+        chosen = rng.permutation(np.minimum(np.searchsorted(edges, places, "right"), fraction.size - 1))
         return self.samples.reshape(-1, dimension)[np.newaxis, chosen]
 
 

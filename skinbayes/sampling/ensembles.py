@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import Block, EnsembleState
+from skinbayes.sampling.advance import EnsembleState, EnsembleSteps
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
@@ -55,7 +55,7 @@ def run_ensembles(
     options : seed, sizes, when to stop, how to compute
     store : where steps are kept; a store that resumes gives the steps it holds
     progress : called at the beginning and after every block of steps
-    moves : builds the proposals; those that suit a costly target, or another, if omitted
+    moves : builds the proposals; those that suit a expensive target, or another, if omitted
 
     Returns
     -------
@@ -70,7 +70,7 @@ def run_ensembles(
     MachineError
         If steps cannot be stored any more, or a worker process died twice; steps stored before are kept.
     """
-    moves = moves or moves_for(options.costly)
+    moves = moves or moves_for(options.expensive)
     rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
@@ -117,7 +117,7 @@ def draw_identity(
     -------
     values that can be written as JSON, under names that make sense in a message
     """
-    moves = moves or moves_for(options.costly)
+    moves = moves or moves_for(options.expensive)
     return {
         FINGERPRINT: target.fingerprint,
         "coordinates": list(target.names),
@@ -150,17 +150,17 @@ def _progress(
     )
 
 
-def _judged(target: Target, options: SamplerOptions, rounds: list[list[Block]]) -> StoppingReport:
+def _judged(target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]]) -> StoppingReport:
     discarded = last_gathering(rounds) * options.block_steps
     return judge(_joined(rounds, "positions"), target.names, options, discarded)
 
 
-def _joined(rounds: list[list[Block]], name: str) -> FloatArray:
+def _joined(rounds: list[list[EnsembleSteps]], name: str) -> FloatArray:
     return np.concatenate([np.stack([getattr(block, name) for block in blocks]) for blocks in rounds], axis=1)
 
 
 def _chains(
-    target: Target, options: SamplerOptions, rounds: list[list[Block]], report: StoppingReport
+    target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]], report: StoppingReport
 ) -> Chains:
     starts = options.ensembles * options.walkers_for(len(target.names))
     return Chains(

@@ -22,7 +22,7 @@ FREEDOM, WIDENING = 5.0, 1.1
 """Degrees of freedom of the Student distribution, and its squared scale over the covariance of the walkers."""
 
 FLAT = 1e-7
-"""Walkers whose extent across some direction is less than this share of a coordinate's count as flat."""
+"""Walkers whose extent across some direction is less than this fraction of a coordinate's count as flat."""
 
 
 def default_moves() -> WeightedMoves:
@@ -50,7 +50,7 @@ def default_moves() -> WeightedMoves:
 def few_walkers_moves() -> WeightedMoves:
     """Differential evolution (40 %), a Student distribution about the other half (40 %) and a kernel density of it (20 %).
 
-    For targets that are costly to evaluate, whose ensembles are small: 32 other walkers are too few for a kernel density in
+    For targets that are expensive to evaluate, whose ensembles are small: 32 other walkers are too few for a kernel density in
     eight or ten dimensions, but their mean and covariance are known well enough. Where a posterior is bent, Student proposals
     leave walkers in its tips, which the other two bring back. Autocorrelation times, in steps:
 
@@ -72,9 +72,9 @@ def few_walkers_moves() -> WeightedMoves:
     ]
 
 
-def moves_for(costly: bool) -> MoveFactory:
-    """The moves of targets that are costly to evaluate, or of others."""
-    return few_walkers_moves if costly else default_moves
+def moves_for(expensive: bool) -> MoveFactory:
+    """The moves of targets that are expensive to evaluate, or of others."""
+    return few_walkers_moves if expensive else default_moves
 
 
 def _independence_move(propose: Proposal) -> Any:

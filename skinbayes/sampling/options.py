@@ -24,7 +24,7 @@ class EngineOptions:
     seed : non-negative integer from which every random stream is spawned
     ess : effective sample size wanted in every coordinate
     cores : worker processes
-    costly : the target takes so long to evaluate that fewer walkers are better
+    expensive : the target takes so long to evaluate that fewer walkers are better
 
     Raises
     ------
@@ -35,7 +35,7 @@ class EngineOptions:
     seed: int
     ess: float = 2000.0
     cores: int = 1
-    costly: bool = False
+    expensive: bool = False
 
     def __post_init__(self) -> None:
         whole("seed", self.seed, 0)
@@ -57,7 +57,7 @@ class SamplerOptions(EngineOptions):
     ----------
     ensembles : number of independent ensembles; they are the chains of R-hat, and what ``cores`` share
     walkers : walkers of each ensemble, even and at least twice the dimension; None is
-        :data:`DEFAULT_WALKERS` (:data:`FEWER_WALKERS` if ``costly``) or four times the dimension, whichever is larger
+        :data:`DEFAULT_WALKERS` (:data:`FEWER_WALKERS` if ``expensive``) or four times the dimension, whichever is larger
     r_hat : largest acceptable rank-normalised split R-hat between ensembles
     steps_over_tau : kept steps, summed over the ensembles, must reach this many autocorrelation times
     max_steps : steps of each ensemble after which the run ends, converged or not (a total: resuming does not add)
@@ -99,7 +99,7 @@ class SamplerOptions(EngineOptions):
     def walkers_for(self, dimension: int) -> int:
         """Walkers of each ensemble for a target of ``dimension`` coordinates; InputError if too few were asked for."""
         if self.walkers is None:
-            return max(FEWER_WALKERS if self.costly else DEFAULT_WALKERS, 4 * dimension)
+            return max(FEWER_WALKERS if self.expensive else DEFAULT_WALKERS, 4 * dimension)
         if self.walkers < 2 * dimension:
             raise InputError(
                 f"sampler option walkers: {self.walkers} found, at least {2 * dimension} expected "

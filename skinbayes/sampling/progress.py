@@ -183,7 +183,9 @@ def steps_needed(report: StoppingReport, options: SamplerOptions) -> int | None:
     """Steps in all that a run is likely to need, from what a verdict lacks; None while autocorrelation times are unknown."""
     if not np.isfinite(report.tau).all():
         return None
-    kept = (report.steps - report.burn_in) * max(1.0, *(share for share, _ in _shortfalls(report, options)))
+    kept = (report.steps - report.burn_in) * max(
+        1.0, *(fraction for fraction, _ in _shortfalls(report, options))
+    )
     burn_in = max(_BURN_IN_TIMES * float(report.tau.max()), kept * _BURN_IN_SHARE / (1.0 - _BURN_IN_SHARE))
     return next_check(max(int(kept + burn_in), report.steps) - 1, options.block_steps)
 
@@ -202,8 +204,8 @@ def _shortfalls(report: StoppingReport, options: SamplerOptions) -> Iterator[tup
     value = float(report.walker_r_hat[walker])
     if isfinite(value):
         # what single walkers differ by falls as one over their length
-        share = (value**2 - 1.0) / (WALKER_R_HAT**2 - 1.0)
+        fraction = (value**2 - 1.0) / (WALKER_R_HAT**2 - 1.0)
         yield (
-            share,
+            fraction,
             f"walkers still differ in {report.names[walker]} (R-hat {_r_hat(value)} of {WALKER_R_HAT})",
         )

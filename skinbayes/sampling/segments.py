@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from skinbayes.sampling.advance import Block
+from skinbayes.sampling.advance import EnsembleSteps
 from skinbayes.sealed import DamagedFile, checked, sealed
 
 _STATE_WORDS = 624
@@ -34,7 +34,7 @@ class OtherRun(ValueError):
     """A segment is whole, but of another run."""
 
 
-def segment_image(blocks: list[Block], identity: str, before: list[Block] | None) -> bytes:
+def segment_image(blocks: list[EnsembleSteps], identity: str, before: list[EnsembleSteps] | None) -> bytes:
     """The content of a segment file. It is made in memory: HDF5 does not survive a disk that is full.
 
     Parameters
@@ -54,7 +54,7 @@ def segment_image(blocks: list[Block], identity: str, before: list[Block] | None
     return sealed(image.getvalue())
 
 
-def read_segment(path: Path, identity: str, before: list[Block] | None) -> list[Block]:
+def read_segment(path: Path, identity: str, before: list[EnsembleSteps] | None) -> list[EnsembleSteps]:
     """The blocks of a segment file.
 
     Parameters
@@ -89,7 +89,7 @@ def read_segment(path: Path, identity: str, before: list[Block] | None) -> list[
     return _blocks(arrays)
 
 
-def _digest(blocks: list[Block] | None) -> str:
+def _digest(blocks: list[EnsembleSteps] | None) -> str:
     """Digest of everything in the blocks, by which the next segment knows what it follows."""
     digest = hashlib.sha256()
     for name, values in _arrays(blocks or []).items():
@@ -122,7 +122,7 @@ def _read(file: Mapping[str, object]) -> dict[str, NDArray[np.generic]]:
     return {name: np.asarray(file[name]) for name in _KINDS}
 
 
-def _arrays(blocks: list[Block]) -> dict[str, NDArray[np.generic]]:
+def _arrays(blocks: list[EnsembleSteps]) -> dict[str, NDArray[np.generic]]:
     """The blocks of all ensembles as arrays whose first axis is the ensemble; none for no blocks."""
     if not blocks:
         return {}
@@ -141,10 +141,10 @@ def _arrays(blocks: list[Block]) -> dict[str, NDArray[np.generic]]:
     return {name: np.array(values[name], dtype=kind) for name, kind in _KINDS.items()}
 
 
-def _blocks(arrays: Mapping[str, NDArray[np.generic]]) -> list[Block]:
+def _blocks(arrays: Mapping[str, NDArray[np.generic]]) -> list[EnsembleSteps]:
     """The inverse of :func:`_arrays`."""
     return [
-        Block(
+        EnsembleSteps(
             positions=arrays["positions"][index],
             log_density=arrays["log_density"][index],
             random_state=(

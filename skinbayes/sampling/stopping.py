@@ -49,7 +49,7 @@ JUDGED_STEPS = 256
 """Longer chains are thinned to between half of this and this many steps before tau is estimated."""
 
 TAIL_SHARE = 0.25
-"""Share of the effective sample size asked for that the 5 % and 95 % quantiles have to reach."""
+"""Fraction of the effective sample size asked for that the 5 % and 95 % quantiles have to reach."""
 
 FEWER_STEPS = 64
 """The same for R-hat between ensembles and for the burn-in, which need no resolution in time."""

@@ -17,7 +17,7 @@ from typing import Any
 
 from skinbayes.atomic import PARTIAL, write_atomically
 from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning, cannot_write
-from skinbayes.sampling.advance import Block
+from skinbayes.sampling.advance import EnsembleSteps
 from skinbayes.sampling.segments import OtherRun, read_segment, segment_image
 from skinbayes.sampling.watched import WatchedDirectory
 from skinbayes.sealed import DAMAGED, DamagedFile, content_digest, put_aside, read_note, sealed_note
@@ -80,10 +80,10 @@ class SampleStore:
         self._resume = resume
         self._header = b""
         self._digest = ""
-        self._rounds: list[list[Block]] = []
+        self._rounds: list[list[EnsembleSteps]] = []
         self._watched: WatchedDirectory | None = None
 
-    def open(self, identity: Mapping[str, Any]) -> list[list[Block]]:
+    def open(self, identity: Mapping[str, Any]) -> list[list[EnsembleSteps]]:
         """Claim the directory for a run, or take up the run it holds.
 
         Parameters
@@ -92,7 +92,7 @@ class SampleStore:
 
         Returns
         -------
-        the blocks stored so far: for each, one :class:`Block` an ensemble
+        the blocks stored so far: for each, one :class:`EnsembleSteps` an ensemble
 
         Raises
         ------
@@ -147,7 +147,7 @@ class SampleStore:
         """Whether there are steps, on disk or, if that failed, in memory."""
         return bool(self._rounds)
 
-    def append(self, blocks: list[Block]) -> None:
+    def append(self, blocks: list[EnsembleSteps]) -> None:
         """Add the next block of every ensemble; on return it is on disk, as are all before it.
 
         Raises
@@ -213,9 +213,9 @@ class SampleStore:
                 "Use the same model, data and settings, or another directory."
             )
 
-    def _read(self, segments: list[Path]) -> list[list[Block]]:
+    def _read(self, segments: list[Path]) -> list[list[EnsembleSteps]]:
         """The blocks up to the first segment that is missing or damaged; the segments from there on are put aside."""
-        rounds: list[list[Block]] = []
+        rounds: list[list[EnsembleSteps]] = []
         for path in segments:
             expected = self._segment(len(rounds) + 1)
             try:

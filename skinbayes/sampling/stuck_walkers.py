@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import Block, EnsembleState
+from skinbayes.sampling.advance import EnsembleState, EnsembleSteps
 
 LATEST_ROUND = 10
 """Blocks of steps after which walkers may still be taken along."""
 
 DEPTH, DEPTH_PER_DIMENSION = 20.0, 3.0
 """A walker is left behind if its log-density is lower than the median of its ensemble by more than the first plus the second
-times the dimension. Of a normal distribution in 8 dimensions a share of 1e-17 lies so low; a second mode that matters would
+times the dimension. Of a normal distribution in 8 dimensions a fraction of 1e-17 lies so low; a second mode that matters would
 need e^44 times the volume."""
 
 
@@ -43,7 +43,7 @@ def left_behind(log_density: FloatArray, dimension: int) -> NDArray[np.bool_]:
     return np.asarray(log_density < low)
 
 
-def gathered(blocks: Sequence[Block], rounds: int, seed: int) -> list[EnsembleState]:
+def gathered(blocks: Sequence[EnsembleSteps], rounds: int, seed: int) -> list[EnsembleState]:
     """States from which the ensembles go on after ``rounds`` blocks of steps: the ends of the last, stuck walkers taken along.
 
     A function of its arguments alone, so that a resumed run goes on as an uninterrupted one does.
@@ -62,7 +62,7 @@ def gathered(blocks: Sequence[Block], rounds: int, seed: int) -> list[EnsembleSt
     return states
 
 
-def last_gathering(rounds: Sequence[Sequence[Block]]) -> int:
+def last_gathering(rounds: Sequence[Sequence[EnsembleSteps]]) -> int:
     """Number of blocks after which walkers were last taken along, before the last block; 0 if never."""
     for number in range(min(len(rounds) - 1, LATEST_ROUND), 0, -1):
         for block in rounds[number - 1]:

@@ -11,12 +11,12 @@ from multiprocessing.connection import Connection, wait
 from typing import TypeAlias
 
 from skinbayes.errors import MachineError
-from skinbayes.sampling.advance import Block, EnsembleState, advance
+from skinbayes.sampling.advance import EnsembleState, EnsembleSteps, advance
 from skinbayes.sampling.moves import MoveFactory
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.target import Target
 
-Advance: TypeAlias = Callable[[list[EnsembleState]], list[Block]]
+Advance: TypeAlias = Callable[[list[EnsembleState]], list[EnsembleSteps]]
 """Moves every ensemble one block further."""
 
 
@@ -86,10 +86,10 @@ class _Worker:
         except OSError:
             self._again()
 
-    def receive(self) -> tuple[int, Block | Exception] | None:
+    def receive(self) -> tuple[int, EnsembleSteps | Exception] | None:
         """The number of the ensemble and its block; None if it died and begins anew."""
         try:
-            reply: tuple[int, Block | Exception] = self.connection.recv()
+            reply: tuple[int, EnsembleSteps | Exception] = self.connection.recv()
         except (EOFError, OSError):
             self._again()
             return None
@@ -131,7 +131,7 @@ def _interrupts_held_back() -> Iterator[None]:
 def _serve(connection: Connection, target: Target, steps: int, vectorize: bool, moves: MoveFactory) -> None:
     """Advance ensembles as they are sent, until the other end closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    reply: tuple[int, Block | Exception]
+    reply: tuple[int, EnsembleSteps | Exception]
     try:
         while True:
             index, state = connection.recv()
@@ -152,10 +152,10 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[Block]:
+def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[EnsembleSteps]:
     """Give each free worker the next ensemble; which worker does what does not change the result."""
     waiting = list(enumerate(states))[::-1]
-    blocks: dict[int, Block] = {}
+    blocks: dict[int, EnsembleSteps] = {}
     busy = crew[: len(waiting)]
     for worker in busy:
         worker.send(*waiting.pop())

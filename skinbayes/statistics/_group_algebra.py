@@ -145,11 +145,11 @@ def condition_effects(
     inverse = np.asarray(np.linalg.inv(factor), dtype=float)
 
     target = scale * projection
-    share = target[:, eliminated] / pivots
+    fraction = target[:, eliminated] / pivots
     centre = np.empty_like(scale)
-    rest = np.take(target, kept, axis=1) - _times(np.swapaxes(coupling, 1, 2), share)
+    rest = np.take(target, kept, axis=1) - _times(np.swapaxes(coupling, 1, 2), fraction)
     centre[:, kept] = solved = _times(np.swapaxes(inverse, 1, 2), _times(inverse, rest))
-    centre[:, eliminated] = share - _times(coupling, solved) / pivots
+    centre[:, eliminated] = fraction - _times(coupling, solved) / pivots
     log_determinant = np.log(pivots).sum(axis=-1)
     log_determinant += 2.0 * np.log(np.ascontiguousarray(np.diagonal(factor, axis1=1, axis2=2))).sum(axis=-1)
     sound &= np.isfinite(centre).all(axis=-1)

@@ -10,7 +10,7 @@ from scipy.special import bdtr, ndtri
 from skinbayes.arrays import FloatArray
 
 SURPRISING = 0.01
-"""A datum with a smaller share of predictive draws on one side of it is far out."""
+"""A datum with a smaller fraction of predictive draws on one side of it is far out."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Agreement:
         return self.few_inside or bool(self.far or self.missed)
 
 
-def examine(observed: FloatArray, draws: FloatArray, alike: bool) -> Agreement:
+def examine(observed: FloatArray, draws: FloatArray, of_one_kind: bool) -> Agreement:
     """Hold data against posterior predictive draws.
 
     Coverage of predictive intervals, data in the tails, and posterior predictive p-values of mean and scatter (Gelman, Meng &
@@ -60,7 +60,7 @@ def examine(observed: FloatArray, draws: FloatArray, alike: bool) -> Agreement:
     Examples
     --------
     >>> draws = np.random.default_rng(1).normal(size=(2000, 20))
-    >>> found = examine(np.r_[np.linspace(-1.5, 1.5, 19), 9.0], draws, alike=True)
+    >>> found = examine(np.r_[np.linspace(-1.5, 1.5, 19), 9.0], draws, of_one_kind=True)
     >>> found.misfit, found.far, found.wide
     (True, (19,), 19)
     """
@@ -74,7 +74,7 @@ def examine(observed: FloatArray, draws: FloatArray, alike: bool) -> Agreement:
     limit = min(SURPRISING, 0.025 / count)
     rare = (tails < limit) & (_distance(observed, low, middle, high) > -ndtri(limit))
     statistics: dict[str, tuple[int, int]] = {}
-    if alike:
+    if of_one_kind:
         for name, simulated, real in (
             ("mean", draws.mean(axis=1), observed.mean()),
             ("scatter between rows", draws.std(axis=1, ddof=1), observed.std(ddof=1)),

@@ -15,7 +15,7 @@ from math import inf
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.statistics.priors import Block, Prior
+from skinbayes.statistics.priors import Prior, StackedPriors
 from skinbayes.statistics.transforms import VectorTransform
 
 BatchFunction = Callable[[FloatArray], FloatArray]
@@ -72,13 +72,13 @@ class _Independent:
     priors: tuple[Prior, ...]
 
     @cached_property
-    def _blocks(self) -> tuple[tuple[Block, slice | list[int]], ...]:
+    def _blocks(self) -> tuple[tuple[StackedPriors, slice | list[int]], ...]:
         """Priors of one family together: one NumPy call for each family instead of one for each parameter."""
         blocks = []
         for family in dict.fromkeys(prior.family for prior in self.priors):
             index = [i for i, prior in enumerate(self.priors) if prior.family == family]
             columns = slice(None) if len(index) == len(self.priors) else index
-            blocks.append((Block.of([self.priors[i] for i in index]), columns))
+            blocks.append((StackedPriors.of([self.priors[i] for i in index]), columns))
         return tuple(blocks)
 
     def __call__(self, theta: FloatArray) -> FloatArray:

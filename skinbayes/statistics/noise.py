@@ -5,7 +5,7 @@ Three contributions are added in quadrature to one width w for each row:
 
 - ``scale``, the scatter that is fitted (dimensionless for the families marked ``relative``),
 - ``spread``, a known standard deviation of each datum, in the unit of the observable,
-- ``discrepancy``, an independent error of the model itself, as a share of the prediction.
+- ``discrepancy``, an independent error of the model itself, as a fraction of the prediction.
 
 ============== ====================== ==============================================
 family         distribution           w²

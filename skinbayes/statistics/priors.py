@@ -15,7 +15,7 @@ from skinbayes.errors import InputError
 from skinbayes.statistics.families import FAMILIES, Constants, Family
 
 SMALLEST_MASS = 1e-12
-"""A range that holds less than this share of a distribution counts as holding nothing."""
+"""A range that holds less than this fraction of a distribution counts as holding nothing."""
 
 
 @lru_cache(maxsize=512)
@@ -71,7 +71,7 @@ class Prior:
         if not mass >= SMALLEST_MASS:
             raise InputError(
                 f"{self._written()} has no mass between {self.lower:g} and {self.upper:g} "
-                f"(a share of {mass:.1g}; expected at least {SMALLEST_MASS:g})."
+                f"(a fraction of {mass:.1g}; expected at least {SMALLEST_MASS:g})."
             )
         return log(mass)
 
@@ -127,27 +127,27 @@ class Prior:
         distribution, mass = self._scipy(), np.exp(self._log_mass)
         inside = np.clip(values, self.lower, self.upper)
         if distribution.cdf(self.lower) > 0.5:  # differences of survival functions keep their digits up there
-            share = (distribution.sf(self.lower) - distribution.sf(inside)) / mass
+            fraction = (distribution.sf(self.lower) - distribution.sf(inside)) / mass
         else:
-            share = (distribution.cdf(inside) - distribution.cdf(self.lower)) / mass
-        return np.clip(share, 0.0, 1.0)
+            fraction = (distribution.cdf(inside) - distribution.cdf(self.lower)) / mass
+        return np.clip(fraction, 0.0, 1.0)
 
     def quantile(self, u: ArrayLike) -> FloatArray:
-        """The value below which a share ``u`` (any shape, 0 to 1) of the mass lies; inverse of :meth:`cdf`.
+        """The value below which a fraction ``u`` (any shape, 0 to 1) of the mass lies; inverse of :meth:`cdf`.
 
         Examples
         --------
         >>> print(f"{float(make_prior('uniform', [2.0, 4.0]).quantile(0.25)):.3f}")
         2.500
         """
-        share = np.asarray(u, dtype=float)
+        fraction = np.asarray(u, dtype=float)
         if self._is_whole():
-            return np.asarray(self._scipy().ppf(share))
+            return np.asarray(self._scipy().ppf(fraction))
         distribution, mass = self._scipy(), np.exp(self._log_mass)
         if distribution.cdf(self.lower) > 0.5:
-            values = distribution.isf(np.clip(distribution.sf(self.lower) - share * mass, 0.0, 1.0))
+            values = distribution.isf(np.clip(distribution.sf(self.lower) - fraction * mass, 0.0, 1.0))
         else:
-            values = distribution.ppf(np.clip(distribution.cdf(self.lower) + share * mass, 0.0, 1.0))
+            values = distribution.ppf(np.clip(distribution.cdf(self.lower) + fraction * mass, 0.0, 1.0))
         return np.clip(values, self.lower, self.upper)
 
     def draw(self, rng: np.random.Generator, n: int) -> FloatArray:
@@ -236,7 +236,7 @@ class Prior:
 
 
 @dataclass(frozen=True)
-class Block:
+class StackedPriors:
     """Priors of one family side by side, for log-densities of many columns at once.
 
     Attributes
@@ -254,9 +254,9 @@ class Block:
     above: FloatArray
 
     @staticmethod
-    def of(priors: Sequence[Prior]) -> Block:
+    def of(priors: Sequence[Prior]) -> StackedPriors:
         """The block of k priors, all of one family."""
-        return Block(
+        return StackedPriors(
             priors[0].family,
             tuple(np.array(column) for column in zip(*(prior._constants for prior in priors), strict=True)),
             np.array([prior._log_mass for prior in priors]),

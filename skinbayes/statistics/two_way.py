@@ -53,21 +53,21 @@ class AnalysisOfVariance:
     fitted: FloatArray
 
     @property
-    def sequential_share(self) -> dict[str, float]:
+    def sequential_fraction(self) -> dict[str, float]:
         """Sequential sums of squares over the total; NaN if all values are equal."""
-        return {name: self._share(squares) for name, squares in self.sequential_sum_of_squares.items()}
+        return {name: self._fraction(squares) for name, squares in self.sequential_sum_of_squares.items()}
 
     @property
-    def marginal_share(self) -> dict[str, float]:
+    def marginal_fraction(self) -> dict[str, float]:
         """Marginal sums of squares over the total; NaN if all values are equal."""
-        return {name: self._share(squares) for name, squares in self.marginal_sum_of_squares.items()}
+        return {name: self._fraction(squares) for name, squares in self.marginal_sum_of_squares.items()}
 
     @property
-    def residual_share(self) -> float:
+    def residual_fraction(self) -> float:
         """Residual sum of squares over the total; NaN if all values are equal."""
-        return self._share(self.residual_sum_of_squares)
+        return self._fraction(self.residual_sum_of_squares)
 
-    def _share(self, squares: float) -> float:
+    def _fraction(self, squares: float) -> float:
         return squares / self.total_sum_of_squares if self.total_sum_of_squares > 0.0 else nan
 
 

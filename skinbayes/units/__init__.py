@@ -9,7 +9,7 @@ from skinbayes.units.conversion import (
 )
 from skinbayes.units.format import format_quantity
 from skinbayes.units.numbers import comma_advice
-from skinbayes.units.words import is_unit, unit_table
+from skinbayes.units.unit_words import is_unit, unit_table
 
 __all__ = [
     "comma_advice",

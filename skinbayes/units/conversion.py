@@ -19,7 +19,7 @@ import numpy as np
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.units.numbers import comma_advice, number_text
-from skinbayes.units.words import UnknownUnit, canonical_unit, nearest_units, why_no_unit
+from skinbayes.units.unit_words import UnknownUnit, canonical_unit, nearest_units, why_no_unit
 
 _NUMBER = re.compile(
     r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf(?:inity)?(?![a-z])", re.IGNORECASE

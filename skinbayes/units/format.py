@@ -6,7 +6,7 @@ import re
 from math import isfinite
 
 from skinbayes.units.conversion import OtherDimension, unit_conversion
-from skinbayes.units.words import UnknownUnit
+from skinbayes.units.unit_words import UnknownUnit
 
 _PREFIXES = (
     (1e9, "G"),

@@ -23,14 +23,14 @@ class Bridged(NamedTuple):
 
     Attributes
     ----------
-    load, pull : p0, Pa, and γ_w Σcos θ ≥ 0, N/m, shape ``(B,)``
+    load, wetting_tension : p0, Pa, and γ_w Σcos θ ≥ 0, N/m, shape ``(B,)``
     source : what their gap distributions are made of, each part of no batch shape or of shape ``(B,)``
     height : rms height, m, shape ``(B,)``
     table : curves solved beforehand, or None
     """
 
     load: FloatArray
-    pull: FloatArray
+    wetting_tension: FloatArray
     source: GapSource
     height: FloatArray
     table: BridgeTable | None
@@ -45,7 +45,11 @@ class Bridged(NamedTuple):
     def select(self, rows: IndexArray) -> Bridged:
         """Some of the skins."""
         return Bridged(
-            self.load[rows], self.pull[rows], self.source.select(rows), self.height[rows], self.table
+            self.load[rows],
+            self.wetting_tension[rows],
+            self.source.select(rows),
+            self.height[rows],
+            self.table,
         )
 
     def flooded(self) -> tuple[FloatArray, BoolArray, Curve | None]:
@@ -56,13 +60,13 @@ class Bridged(NamedTuple):
         if self.table is not None and isinstance(source.skin, Solid):
             groups = skin_groups(
                 self.load,
-                self.pull,
+                self.wetting_tension,
                 height=self.height,
                 spectrum=source.spectrum,
                 skin=source.skin,
                 area_correction=source.area_correction,
             )
-            known = self.table.covers(groups) & (self.pull > 0)
+            known = self.table.covers(groups) & (self.wetting_tension > 0)
             if known.any():
                 chosen = {name: value[known] for name, value in groups.items()}
                 curve = self.table.curve(chosen, self.load[known], height=self.height[known])
@@ -90,18 +94,27 @@ class Bridged(NamedTuple):
             known[np.flatnonzero(known)[~far]] = False
             if rows.size:
                 yield rows, curve.select(far)
-        solvable = np.isfinite(self.load * self.pull * separation) & (self.pull > 0) & (separation > 0)
+        solvable = (
+            np.isfinite(self.load * self.wetting_tension * separation)
+            & (self.wetting_tension > 0)
+            & (separation > 0)
+        )
         rows = np.flatnonzero(solvable & ~known)
         if rows.size:
-            load, pull, film = self.load[rows], self.pull[rows], thinnest[rows]
-            yield rows, solve_curve(self.source.select(rows), load, pull, separation[rows], film, whole=True)
+            load, wetting_tension, film = self.load[rows], self.wetting_tension[rows], thinnest[rows]
+            yield (
+                rows,
+                solve_curve(
+                    self.source.select(rows), load, wetting_tension, separation[rows], film, whole=True
+                ),
+            )
 
     def log_pressure(self, films: FloatArray) -> FloatArray:
         """ln p, p in Pa, at films, m, of shape ``(B, F)``; nan where a parameter is impossible."""
-        if not (self.pull > 0).any():
-            return np.asarray(np.log(self.load + 0 * self.pull)[:, None] + np.zeros(films.shape))
+        if not (self.wetting_tension > 0).any():
+            return np.asarray(np.log(self.load + 0 * self.wetting_tension)[:, None] + np.zeros(films.shape))
         separation, known, curve = self.flooded()
-        possible = np.isfinite(self.load * self.pull * separation)
+        possible = np.isfinite(self.load * self.wetting_tension * separation)
         found = np.where(possible, np.log(self.load), np.nan)[:, None] + np.zeros(films.shape)
         # where there is nothing to solve, half of the flooded film stands in
         inside = np.where(films < separation[:, None], films, separation[:, None] / 2)
@@ -114,7 +127,7 @@ class Bridged(NamedTuple):
         """Films, m, from the floor (at most half of the flooded film) to flooded, and ln p there, shapes ``(B, count)``."""
         separation, known, curve = self.flooded()
         start = np.minimum(floor, separation / 2)
-        possible = np.isfinite(self.load * self.pull * separation)
+        possible = np.isfinite(self.load * self.wetting_tension * separation)
         films = start[:, None] + (separation - start)[:, None] * lobatto(count)
         found = np.where(possible, np.log(self.load), np.nan)[:, None] + np.zeros(films.shape)
         for rows, each in self.curves(start, separation, known, curve):

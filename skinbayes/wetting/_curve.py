@@ -92,7 +92,7 @@ class Curve(NamedTuple):
 def solve_curve(
     source: GapSource,
     pressure: FloatArray,
-    pull: FloatArray,
+    wetting_tension: FloatArray,
     separation: FloatArray,
     thinnest: FloatArray,
     last: FloatArray | None = None,
@@ -100,8 +100,8 @@ def solve_curve(
 ) -> Curve:
     """Curves from the flooded gap down to the film ``thinnest`` (m), all of shape ``(B,)``; separation is ū(p0), m.
 
-    Where the pull grows so fast that there is no such film, the curve ends at a thicker one. If ``last`` is given curves end
-    at these z instead, and are nan where the pull is many times the load. Of ``whole`` curves
+    Where the capillary pressure grows so fast that there is no such film, the curve ends at a thicker one. If ``last`` is given
+    curves end at these z instead, and are nan where the capillary pressure is many times the load. Of ``whole`` curves
     those are nan that do not come to the thinnest film.
     """
     thinnest = thinnest.copy()
@@ -112,11 +112,11 @@ def solve_curve(
         np.full((count, gaps), np.nan),
         np.full((count, gaps, 4), np.nan),
     )
-    # how far up the pressures go, in units of pull/ū(p0), and how small the gaps are
+    # how far up the pressures go, in units of wetting tension/ū(p0), and how small the gaps are
     reach, margin = np.full(count, _REACH), np.full(count, _MARGIN)
-    todo = np.flatnonzero(np.isfinite(pressure * pull * separation * thinnest) & (separation > 0))
+    todo = np.flatnonzero(np.isfinite(pressure * wetting_tension * separation * thinnest) & (separation > 0))
     for _ in range(100):
-        span = np.log1p(reach[todo] * pull[todo] / separation[todo] / pressure[todo]) + 1e-3
+        span = np.log1p(reach[todo] * wetting_tension[todo] / separation[todo] / pressure[todo]) + 1e-3
         need = np.searchsorted([s for s, _ in _SPANS], span)
         if last is not None:
             moderate = need <= _MODERATE
@@ -138,7 +138,7 @@ def solve_curve(
                 end = np.log1p(curve.reference[rows] / (margin[rows] * family.gap_of_film(thinnest[rows])))
             else:
                 end = last[rows]
-            short = _solve_rows(curve, family, rows, pressure, pull, end)
+            short = _solve_rows(curve, family, rows, pressure, wetting_tension, end)
             thick = ~short & (curve.nodes[rows, -1] > np.log(thinnest[rows])) & (last is None)
             reach[rows[short]] *= 2.5
             margin[rows[thick]] *= 0.7
@@ -150,7 +150,12 @@ def solve_curve(
 
 
 def _solve_rows(
-    curve: Curve, family: GapFamily, rows: IndexArray, pressure: FloatArray, pull: FloatArray, end: FloatArray
+    curve: Curve,
+    family: GapFamily,
+    rows: IndexArray,
+    pressure: FloatArray,
+    wetting_tension: FloatArray,
+    end: FloatArray,
 ) -> BoolArray:
     """Fill in the curves of some rows; tells which had too short a range of pressures."""
     count = curve.nodes.shape[1]
@@ -161,12 +166,12 @@ def _solve_rows(
     # narrow gaps that are wet at all these Kelvin lengths need not be told apart
     needed = family.components_above(gap[:, -1])
     for keep in np.unique(needed).tolist():
-        alike = np.flatnonzero(needed == keep)
+        of_one_size = np.flatnonzero(needed == keep)
         step = max(1, _BLOCK // (count * (keep + 1)))
-        for first in range(0, alike.size, step):
-            block = alike[first : first + step]
+        for first in range(0, of_one_size.size, step):
+            block = of_one_size[first : first + step]
             part, here = family.block(block).lumped(keep), rows[block]
-            x, solved[block] = smallest_root(part, pressure[here], pull[here], gap[block])
+            x, solved[block] = smallest_root(part, pressure[here], wetting_tension[here], gap[block])
             filled = part.fill(x, gap[block])
             logs = np.log([filled.film, filled.area, part.mean_separation(x)])
             values[block] = np.stack([logs[0], x, logs[1], logs[2]], axis=-1)

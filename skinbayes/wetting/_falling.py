@@ -29,8 +29,8 @@ def falling_root(
     for step in range(_STEPS):
         if not active.any():
             break
-        share = 0.5 if step % 4 == 3 else left / (left - right)
-        root = np.where(active, low + share * (high - low), root)
+        fraction = 0.5 if step % 4 == 3 else left / (left - right)
+        root = np.where(active, low + fraction * (high - low), root)
         value = function(root)
         active = active & (np.abs(value) > enough) & (np.minimum(root - low, high - root) > close)
         up, down = active & (value > 0), active & ~(value > 0)

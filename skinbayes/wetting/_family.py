@@ -25,13 +25,13 @@ class GapFamily(NamedTuple):
     Attributes
     ----------
     start, span : of ln p, p in Pa, dimensionless, shape ``(B,)``
-    parts : Chebyshev coefficients of share (dimensionless), share times centre and width (m) of the n components, one
+    parts : Chebyshev coefficients of fraction (dimensionless), share times centre and width (m) of the n components, one
         after the other, and of ln ū (m), shape ``(B, K, 3 n + 1)``
     limit : largest centre at the nodes, m, shape ``(B,)``
     narrow : half the smallest width of each component at the nodes, m, shape ``(B, n)``
     middle : distribution in the middle of the range, components of shape ``(B, n)``
-    reach : largest gap of each component at any node, to 1e-12 of its share, m, shape ``(B, n)``
-    rest : coefficients of share and share times mean gap (m) of a component and all after it, shape ``(B, K, 2, n)``
+    reach : largest gap of each component at any node, to 1e-12 of its fraction, m, shape ``(B, n)``
+    rest : coefficients of fraction and share times mean gap (m) of a component and all after it, shape ``(B, K, 2, n)``
     """
 
     start: FloatArray
@@ -92,11 +92,11 @@ class GapFamily(NamedTuple):
         n = self.reach.shape[1]
         if keep >= n - 1:
             return self
-        share, moment, width = (self.parts[..., i * n : i * n + keep] for i in range(3))
+        fraction, moment, width = (self.parts[..., i * n : i * n + keep] for i in range(3))
         lump = self.rest[..., keep]
         narrow = np.zeros_like(lump[..., :1])
         narrow[:, 0, 0] = 0.01 * lump[:, 0, 1] / lump[:, 0, 0]
-        columns = [share, lump[..., :1], moment, lump[..., 1:], width, narrow, self.parts[..., -1:]]
+        columns = [fraction, lump[..., :1], moment, lump[..., 1:], width, narrow, self.parts[..., -1:]]
         widths = np.concatenate([self.narrow[:, :keep], narrow[:, 0] / 2], axis=1)
         return self._replace(
             parts=np.concatenate(columns, axis=-1), narrow=widths, reach=self.reach[:, : keep + 1]
@@ -124,11 +124,11 @@ class GapFamily(NamedTuple):
 def gap_family(start: FloatArray, span: FloatArray, source: GapSource, count: int) -> GapFamily:
     """The family between ``exp(start)`` and ``exp(start + span)`` Pa from ``count`` pressures, ends included."""
     pressure = np.exp(start[:, None] + span[:, None] * lobatto(count))
-    (share, centre, spread), mean = source.at(pressure)
-    values = np.concatenate([share, share * centre, spread, np.log(mean)[..., None]], axis=-1)
-    middle = Mixture(*(x[:, count // 2] for x in (share, centre, spread)))
+    (fraction, centre, spread), mean = source.at(pressure)
+    values = np.concatenate([fraction, fraction * centre, spread, np.log(mean)[..., None]], axis=-1)
+    middle = Mixture(*(x[:, count // 2] for x in (fraction, centre, spread)))
     mean_gap = folded_mean(centre, spread)
-    after = [np.cumsum(x[..., ::-1], axis=-1)[..., ::-1] for x in (share, share * mean_gap)]
+    after = [np.cumsum(x[..., ::-1], axis=-1)[..., ::-1] for x in (fraction, fraction * mean_gap)]
     rest = coefficients(np.concatenate(after, axis=-1))
     return GapFamily(
         start,
@@ -147,12 +147,12 @@ def _centres(
 ) -> tuple[Mixture, Mixture]:
     """Components and their slopes from shares, first moments and widths side by side.
 
-    A component that interpolation leaves with hardly any share has a centre and a width of rounding errors; ``limit``
+    A component that interpolation leaves with hardly any fraction has a centre and a width of rounding errors; ``limit``
     and ``narrow``, m, shapes ``(M, 1)`` and ``(M, n)``, keep them where they do no harm.
     """
-    share, share_rise = value[:, :n], change[:, :n]
-    raw = value[:, n : 2 * n] / share
+    fraction, fraction_rise = value[:, :n], change[:, :n]
+    raw = value[:, n : 2 * n] / fraction
     centre = np.fmin(np.fmax(raw, 0.0), limit)
-    rise = np.where(centre == raw, (change[:, n : 2 * n] - raw * share_rise) / share, 0.0)
+    rise = np.where(centre == raw, (change[:, n : 2 * n] - raw * fraction_rise) / fraction, 0.0)
     width = np.fmax(value[:, 2 * n :], narrow)
-    return Mixture(share, centre, width), Mixture(share_rise, rise, change[:, 2 * n :])
+    return Mixture(fraction, centre, width), Mixture(fraction_rise, rise, change[:, 2 * n :])

@@ -51,12 +51,12 @@ class Mixture(NamedTuple):
 
     Attributes
     ----------
-    share : part of the nominal area, dimensionless, shape ``(..., n)``
+    fraction : part of the nominal area, dimensionless, shape ``(..., n)``
     centre : m, shape ``(..., n)``
     width : m, > 0, shape ``(..., n)``
     """
 
-    share: FloatArray
+    fraction: FloatArray
     centre: FloatArray
     width: FloatArray
 
@@ -66,7 +66,7 @@ class Filled(NamedTuple):
 
     Attributes
     ----------
-    area : F, share of the nominal area whose gap is in 0 … d, real contact not counted, dimensionless
+    area : F, fraction of the nominal area whose gap is in 0 … d, real contact not counted, dimensionless
     film : ∫_0^d u P du, m
     density : dF/dln d, dimensionless; dfilm/dln d is d times it
     area_slope : dF/dx, dimensionless
@@ -89,7 +89,7 @@ def folded_mean(centre: FloatArray, width: FloatArray) -> FloatArray:
 
 def cover(mixture: Mixture, gap: FloatArray, slope: Mixture) -> tuple[FloatArray, FloatArray]:
     """Area and area slope of `fill` alone, for a few thousand elements, in two thirds of its time."""
-    share, centre, width = mixture
+    fraction, centre, width = mixture
     inverse = 1 / width
     z = centre * inverse
     s = np.minimum(gap[:, None] * inverse, z + _FAR)
@@ -102,8 +102,8 @@ def cover(mixture: Mixture, gap: FloatArray, slope: Mixture) -> tuple[FloatArray
     b *= pb
     a += b
     pb -= pa
-    rise = share * (pb * slope.centre - a * slope.width) * inverse + slope.share * area
-    area *= share
+    rise = fraction * (pb * slope.centre - a * slope.width) * inverse + slope.fraction * area
+    area *= fraction
     return area.sum(axis=-1), rise.sum(axis=-1)
 
 
@@ -120,7 +120,7 @@ def fill(mixture: Mixture, gap: FloatArray, slope: Mixture | None = None) -> Fil
     -------
     filled : `Filled`, each of shape ``(M,)``
     """
-    count, n = gap.size, mixture.share.shape[-1]
+    count, n = gap.size, mixture.fraction.shape[-1]
     found = np.zeros((5, count))
     step = max(1, BLOCK // n)
     for first in range(0, count, step):
@@ -132,7 +132,7 @@ def fill(mixture: Mixture, gap: FloatArray, slope: Mixture | None = None) -> Fil
 
 
 def _fill_block(mixture: Mixture, gap: FloatArray, slope: Mixture | None, found: FloatArray) -> None:
-    share, centre, width = mixture
+    fraction, centre, width = mixture
     inverse = 1 / width
     z = centre * inverse
     # a gap beyond reach is as good as an infinite one, and keeps inf − inf out
@@ -147,15 +147,17 @@ def _fill_block(mixture: Mixture, gap: FloatArray, slope: Mixture | None, found:
     centred = below + above - 2 * out
     both = pa + pb
     film = centre * centred - width * (both - 2 * pz)
-    found[0] = (share * area).sum(axis=-1)
-    found[1] = (share * film).sum(axis=-1)
-    found[2] = (share * (both * s)).sum(axis=-1)
+    found[0] = (fraction * area).sum(axis=-1)
+    found[1] = (fraction * film).sum(axis=-1)
+    found[2] = (fraction * (both * s)).sum(axis=-1)
     if slope is None:
         return
     shift, spread = slope.centre, slope.width
     away = pb - pa
     a *= pa
     b *= pb
-    found[3] = (share * (away * shift - (a + b) * spread) * inverse + slope.share * area).sum(axis=-1)
+    found[3] = (fraction * (away * shift - (a + b) * spread) * inverse + slope.fraction * area).sum(axis=-1)
     widening = 2 * pz - both - (a + b) * s
-    found[4] = (share * ((centred + s * away) * shift + widening * spread) + slope.share * film).sum(axis=-1)
+    found[4] = (fraction * ((centred + s * away) * shift + widening * spread) + slope.fraction * film).sum(
+        axis=-1
+    )

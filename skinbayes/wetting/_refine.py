@@ -20,7 +20,7 @@ _NUDGE = 1e-4  # of ln p, for slopes along it
 def filled_at(source: GapSource, log_pressure: FloatArray, gap: FloatArray) -> tuple[Filled, FloatArray]:
     """What lies below ``gap`` (m), and ū (m), at ln p (Pa), all of shape ``(B, F)``."""
     mixture, mean = source.at(np.exp(log_pressure))
-    n = mixture.share.shape[-1]
+    n = mixture.fraction.shape[-1]
     filled = fill(Mixture(*(part.reshape(-1, n) for part in mixture)), gap.reshape(-1))
     return Filled(*(part.reshape(gap.shape) for part in filled)), mean
 
@@ -28,27 +28,27 @@ def filled_at(source: GapSource, log_pressure: FloatArray, gap: FloatArray) -> t
 def roots_at_gaps(
     source: GapSource,
     pressure: FloatArray,
-    pull: FloatArray,
+    wetting_tension: FloatArray,
     gap: FloatArray,
     largest: bool,
     count: bool = True,
 ) -> tuple[FloatArray, FloatArray]:
     """ln p at Kelvin lengths, and how many roots there are.
 
-    ``p − p0 − pull F(d; p)/d`` is not positive at p0 and not negative at p0 + pull/d, as F is between 0 and 1. A ladder of
+    ``p − p0 − Γ F(d; p)/d`` is not positive at p0 and not negative at p0 + Γ/d, as F is between 0 and 1. A ladder of
     pressures between tells the roots apart; two that lie within a rung are missed, as are all of a fold narrower than that.
 
     Parameters
     ----------
     source : of B skins
     pressure : p0, Pa, shape ``(B,)``
-    pull : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
+    wetting_tension : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
     gap : d, m, > 0, shape ``(B, F)``
     largest : take the largest root instead of the smallest
     count : False stops at the smallest root, several times faster, and gives nan for the number of roots
     """
     start = np.log(pressure)
-    strength = pull[:, None] / gap / pressure[:, None]
+    strength = wetting_tension[:, None] / gap / pressure[:, None]
     end = start[:, None] + np.log1p(strength)
     span = end - start[:, None]
     rungs = max(2, int(np.ceil(np.max(span, initial=0.0, where=np.isfinite(span)) / _RUNG)) + 1)
@@ -85,7 +85,7 @@ def roots_at_gaps(
 
 
 def _above(mixture: Mixture, rise: FloatArray, strength: FloatArray, gap: FloatArray) -> BoolArray:
-    """Where p exceeds p0 and the pull, shape ``(F, K)``, for the gaps of one skin at K pressures, ``rise`` = ln p/p0."""
+    """Where p exceeds p0 and the capillary pressure, shape ``(F, K)``: F gaps of one skin, K pressures, ``rise`` = ln p/p0."""
     each = Mixture(*(np.tile(part, (gap.size, 1)) for part in mixture))
     area = fill(each, np.repeat(gap, rise.size)).area.reshape(-1, rise.size)
     return np.asarray(rise - np.log1p(strength[:, None] * area) > 0)
@@ -94,7 +94,7 @@ def _above(mixture: Mixture, rise: FloatArray, strength: FloatArray, gap: FloatA
 def _first_rise(
     source: GapSource, start: FloatArray, strength: FloatArray, gap: FloatArray, rungs: int
 ) -> FloatArray:
-    """The first rung, from 1 on, at which p exceeds p0 and the pull, shape ``(B, F)``; ``rungs`` if none does; nan for nan."""
+    """The first rung, from 1 on, where p exceeds p0 and the capillary pressure, ``(B, F)``; ``rungs`` if none, nan for nan."""
     found = np.full(gap.shape, float(rungs))
     sought = np.isfinite(start[:, None] + strength)
     found[~sought] = np.nan
@@ -117,7 +117,7 @@ def _first_rise(
 def refine_films(
     source: GapSource,
     pressure: FloatArray,
-    pull: FloatArray,
+    wetting_tension: FloatArray,
     film: FloatArray,
     log_pressure: FloatArray,
     z: FloatArray,
@@ -129,12 +129,12 @@ def refine_films(
     ----------
     source : of B skins
     pressure, reference : p0, Pa, and d0, m, shape ``(B,)``
-    pull : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
+    wetting_tension : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
     film : m, shape ``(B, F)``
     log_pressure, z : approximate solution, p in Pa, dimensionless, shape ``(B, F)``
     """
     start, d0 = np.log(pressure)[:, None], reference[:, None]
-    strength = (pull / pressure)[:, None]
+    strength = (wetting_tension / pressure)[:, None]
     x, active = log_pressure.copy(), np.isfinite(log_pressure)
     z = z.copy()
     for _ in range(20):

@@ -13,23 +13,23 @@ _STRIDE = 4  # longest Newton step in units of the step of the map itself
 
 
 def smallest_root(
-    family: GapFamily, pressure: FloatArray, pull: FloatArray, gap: FloatArray
+    family: GapFamily, pressure: FloatArray, wetting_tension: FloatArray, gap: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
     """Smallest root ln p at Kelvin lengths ``gap`` (m, shape ``(B, M)``), and whether it was found in the family's range.
 
-    From p0 the map ``p → p0 + pull F(d; p)/d`` climbs to the smallest root and never passes it. Newton steps shorten the climb;
+    From p0 the map ``p → p0 + Γ F(d; p)/d`` climbs to the smallest root and never passes it. Newton steps shorten the climb;
     they are held to a few times its own step, so that they do not jump over a pair of roots.
 
     Parameters
     ----------
     family : of B skins, from p0 upwards
     pressure : p0, Pa, shape ``(B,)``
-    pull : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
+    wetting_tension : γ_w Σcos θ, N/m, ≥ 0, shape ``(B,)``
     gap : d, m, shape ``(B, M)``
     """
     ground = np.log(pressure)[:, None]
     top = (family.start + family.span)[:, None]
-    strength = pull[:, None] / gap / pressure[:, None]
+    strength = wetting_tension[:, None] / gap / pressure[:, None]
     x = np.broadcast_to(ground, gap.shape).copy()
     lower, upper = x.copy(), np.broadcast_to(top, gap.shape).copy()
     active = np.ones(gap.shape, dtype=bool)

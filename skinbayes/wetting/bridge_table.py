@@ -1,9 +1,9 @@
-"""Pull of capillary bridges against the film, interpolated between skins solved beforehand.
+"""Capillary pressure of bridges against the film, interpolated between skins solved beforehand.
 
 The bridges of a layered rough skin depend on a few groups only. Heights scale: a surface k times as high under k times the load
 has the same gaps, k times as wide; and so do moduli and loads. What is left is the stiffness of the layer over that of the
-tissue, the load over stiffness and height, the pull, the thickness of the layer, and the shape of the spectrum. Those groups that
-vary span a box, on whose Chebyshev nodes the bridges are solved.
+tissue, the load over stiffness and height, the capillary pressure, the thickness of the layer, and the shape of the spectrum.
+Those groups that vary span a box, on whose Chebyshev nodes the bridges are solved.
 """
 
 from __future__ import annotations
@@ -32,9 +32,11 @@ _TRIALS = 48
 # error of p and of the flooded film along one axis, and in the whole box; single solutions are rough to 2e-4
 _AIM, _WORST = 3e-4, 6e-4
 _CUT, _CUTS = 0.05, 16  # by which a box is cut whose corners have no solution
-_TILT = 1 / 3  # exponent of E0/E1 in the load: skins whose pull runs away then lie beyond one value of it
+_TILT = (
+    1 / 3
+)  # exponent of E0/E1 in the load: skins whose capillary pressure runs away then lie beyond one value of it
 _NO_LAYER = np.zeros(())  # ln(E0/E1)
-_PULL = 1e-5  # m; the pull varies linearly far below it
+_TENSION_SCALE = 1e-5  # m; the capillary pressure varies linearly far below it
 _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 
 
@@ -69,7 +71,7 @@ class BridgeTable:
 
 def skin_groups(
     pressure: FloatArray,
-    pull: FloatArray,
+    wetting_tension: FloatArray,
     *,
     height: FloatArray,
     spectrum: PowerSpectrum,
@@ -78,14 +80,14 @@ def skin_groups(
 ) -> dict[str, FloatArray]:
     """Groups of parameters on which capillary bridges depend, up to scale (from Eqs. 3 to 7 of the paper).
 
-    ``stiffness = ln(E0/E1)``, ``load = ln[p0/(E1^⅔ E0^⅓ h_rms)]``, ``pull = ln(1 + γ_w Σcos θ E1/(p0² 10 µm))``, ln of the
-    thickness of the layer and of the wavevectors; Hurst exponent, Poisson ratios and γ as they are. Lengths are in m. A
+    ``stiffness = ln(E0/E1)``, ``load = ln[p0/(E1^⅔ E0^⅓ h_rms)]``, ``wetting_tension = ln(1 + γ_w Σcos θ E1/(p0² 10 µm))``, ln
+    of the thickness of the layer and of the wavevectors; Hurst exponent, Poisson ratios and γ as they are. Lengths are in m. A
     homogeneous solid has no stiffness and no thickness of a layer.
 
     Parameters
     ----------
     pressure : p0, Pa, > 0, shape ``(B,)``
-    pull : γ_w (cos θ1 + cos θ2), N/m, ≥ 0, shape ``(B,)``
+    wetting_tension : γ_w (cos θ1 + cos θ2), N/m, ≥ 0, shape ``(B,)``
     height : h_rms of the spectrum, m, > 0, shape ``(B,)``
     spectrum : power spectrum, C in m^4, scalar or of shape ``(B,)``
     skin : moduli in Pa, thickness in m, each scalar or of shape ``(B,)``
@@ -106,14 +108,14 @@ def skin_groups(
     >>> skin = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
     >>> groups = skin_groups(np.array([6830.0]), np.array([0.0845]), height=np.array([22.4e-6]),
     ...     spectrum=named_surface("paper_reference"), skin=skin, area_correction=np.array(0.42))
-    >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["pull"].round(3))
+    >>> print(groups["stiffness"].round(3), groups["load"].round(3), groups["wetting_tension"].round(3))
     [5.858] [7.679] [1.531]
     """
     bulk, shape = scale_modulus(skin), shape_groups(skin)
     groups = {name: shape[name] for name in ("stiffness",) if name in shape}
     groups |= {
         "load": np.log(pressure / (bulk * height)) - _TILT * shape.get("stiffness", _NO_LAYER),
-        "pull": np.log1p(pull * bulk / np.square(pressure) / _PULL),
+        "wetting_tension": np.log1p(wetting_tension * bulk / np.square(pressure) / _TENSION_SCALE),
         **shape,
         "area_correction": np.asarray(area_correction),
     }
@@ -144,14 +146,14 @@ def bridge_table(
 
     Returns
     -------
-    table : `BridgeTable`; without the skins of the largest load of the box if the pull runs away there; None if it needs more
-        skins than ``most`` or does not come to 6e-4 of the pressure
+    table : `BridgeTable`; without the skins of the largest load of the box if the capillary pressure runs away there; None if
+        it needs more skins than ``most`` or does not come to 6e-4 of the pressure
 
     Notes
     -----
     Pressures at a film are those of `capillary_state` with ``refine=False``, to ``table.found.error``; 99 % of them within five
-    times that, the worst towards the flooded film, where the pull sets in. The solutions themselves are rough at the level of a
-    few 1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 600 skins.
+    times that, the worst towards the flooded film, where the capillary pressure sets in. The solutions themselves are rough at
+    the level of a few 1e-4, which is why more nodes do not help beyond that. Three groups take 100 to 600 skins.
 
     References
     ----------
@@ -179,7 +181,7 @@ def bridge_table(
         solvable = corners is not None and np.isfinite(solve(corners)).all()
         if solvable and (counts := counts_along(box, solve, judge, _AIM, Tasks())) is not None:
             break
-        # the pull runs away under large loads
+        # the capillary pressure runs away under large loads
         low, high = box.ends["load"]
         box = Box({**box.ends, "load": (low, high - _CUT * (high - low))})
     else:
@@ -262,10 +264,10 @@ def _curves(
     skin = solid_of_groups(given, bulk)
     pressing = _pressing(given)
     load = _BULK * _HEIGHT * np.exp(pressing)
-    pull = np.expm1(given["pull"]) * _PULL * np.square(load) / _BULK
+    wetting_tension = np.expm1(given["wetting_tension"]) * _TENSION_SCALE * np.square(load) / _BULK
     gamma = np.ascontiguousarray(given["area_correction"])
     with np.errstate(all="ignore"):
         flooded = np.asarray(mean_separation(load[:, None], surface, skin=skin, area_correction=gamma))[:, 0]
         source = GapSource(surface, skin, gamma, "gaussian")
         end = _end(depth, np.log(flooded / _HEIGHT), pressing)
-        return solve_curve(source, load, pull, flooded, flooded / 10, end), load, flooded
+        return solve_curve(source, load, wetting_tension, flooded, flooded / 10, end), load, flooded

@@ -26,7 +26,9 @@ from skinbayes.wetting._types import BoolArray
 Branch = Literal["approach", "retreat"]
 
 _ROUNDING = 1e-15  # of a sum of two cosines
-_BEYOND = np.log(4.0)  # of ln film; the pull outgrows a film that is much thinner than the last of a curve
+_BEYOND = np.log(
+    4.0
+)  # of ln film; the capillary pressure outgrows a film that is much thinner than the last of a curve
 _NARROW = 1e-13  # m; in gaps up to it, which mean nothing, the area is linear and the film quadratic to 2e-5
 
 
@@ -41,7 +43,7 @@ class CapillaryState:
     capillary_pressure : p_a, attraction per nominal area, Pa
     total_pressure : p = p0 + p_a, Pa
     relative_contact_area : A/A0 at p, elastic, dimensionless
-    wet_area : share of the nominal area that is wet, real contact not counted, dimensionless
+    wet_area : fraction of the nominal area that is wet, real contact not counted, dimensionless
     mean_separation : ū at p, real contact counted with u = 0, m
     mean_separation_wet : mean gap of the wet area, m; nan where contact is so close that nothing is wet
     flooded : 1 where the film fills the whole gap, else 0, dimensionless
@@ -115,7 +117,7 @@ def capillary_state(
     """Contact, wet area and separations of skin with a given amount of water in the gap (Eqs. 5 to 7 of the paper).
 
     Water fills all gaps up to d_K. It pulls with the Laplace pressure ``p_K = γ_w (cos θ1 + cos θ2)/d_K``, spread evenly
-    over the nominal area: ``p = p0 + p_K F(d_K; p)``, where F is the share of the area with gaps up to d_K at the pressure
+    over the nominal area: ``p = p0 + p_K F(d_K; p)``, where F is the fraction of the area with gaps up to d_K at the pressure
     p. d_K follows from ``film = ∫_0^(d_K) u P(u; p) du``. From the film of the mean separation ū(p0) on the gap is
     flooded, and nothing pulls.
 
@@ -143,14 +145,14 @@ def capillary_state(
     -----
     No bridges form where cos θ1 + cos θ2 ≤ 0 (skin on polypropylene). Then p = p0, and the water is taken to fill the
     narrowest gaps all the same, up to ``kelvin_gap``; that water would rather leave them changes nothing but the wet area.
-    The pull sets in with a kink where the sum of cosines passes 0.
+    The capillary pressure sets in with a kink where the sum of cosines passes 0.
 
     The solution is the one that is reached from the flooded gap as water evaporates: d_K falls from infinity and p is
     continuous from p0. For films of micrometres on skin it is the only one. For films well below a nanometre per nominal
-    area the pull of a soft layer grows faster than the film falls: several d_K may belong to a film, of which the largest is
-    taken, and below some film (0.024 nm for the paper's skin) the result is nan or lies in a gap that is nearly closed. Where the
-    pull exceeds the load many times over, thin films are interpolated poorly (``refine=False``, up to tens of percent at a film
-    of 0.3 % of the flooded one).
+    area the capillary pressure of a soft layer grows faster than the film falls: several d_K may belong to a film, of which the
+    largest is taken, and below some film (0.024 nm for the paper's skin) the result is nan or lies in a gap that is nearly
+    closed. Where the capillary pressure exceeds the load many times over, thin films are interpolated poorly (``refine=False``,
+    up to tens of percent at a film of 0.3 % of the flooded one).
 
     Contact is elastic. The mean field gives the area within 1 % of boundary elements with local tractions, but ū is 3 to
     20 % too small there.
@@ -175,12 +177,12 @@ def capillary_state(
                     contact_angle_counterface, area_correction, closure)  # fmt: skip
     with np.errstate(all="ignore"):
         separation, film = case.separation, case.wanted
-        possible = (film > 0) & np.isfinite(separation * case.pull)[:, None]
+        possible = (film > 0) & np.isfinite(separation * case.wetting_tension)[:, None]
         flooded = possible & (film >= separation[:, None])
         # where there is nothing to solve, half of the flooded film stands in
         inside = np.where(possible & ~flooded, film, separation[:, None] / 2)
         thinnest = inside.min(axis=1, initial=np.inf)
-        curve = solve_curve(case.source, case.pressure, case.pull, separation, thinnest)
+        curve = solve_curve(case.source, case.pressure, case.wetting_tension, separation, thinnest)
         z, found = curve.at(inside)
         x, reference = found[0], curve.reference[:, None]
         if refine:
@@ -189,9 +191,11 @@ def capillary_state(
             ends = curve.along(last)
             beyond = np.isnan(z) & (ends[0] - np.log(inside) < _BEYOND)
             x, z = np.where(beyond, ends[1], x), np.where(beyond, last, z)
-            x, z = refine_films(case.source, case.pressure, case.pull, inside, x, z, curve.reference)
+            x, z = refine_films(
+                case.source, case.pressure, case.wetting_tension, inside, x, z, curve.reference
+            )
             gap = reference / np.expm1(z)
-            solutions = roots_at_gaps(case.source, case.pressure, case.pull, gap, False)[1]
+            solutions = roots_at_gaps(case.source, case.pressure, case.wetting_tension, gap, False)[1]
             filled, mean = filled_at(case.source, x, gap)
             wet = np.where(np.isnan(x), np.nan, filled.area)
         else:
@@ -221,7 +225,7 @@ def capillary_state_at_gap(
     Parameters
     ----------
     kelvin_gap : d_K, m, ≥ 0, shape ``(F,)`` or ``(..., F)``, or a scalar; inf is flooded, 0 the limit of narrow gaps, in which
-        the pull is ``γ_w (cos θ1 + cos θ2) P(u → 0; p)``
+        the capillary pressure is ``γ_w (cos θ1 + cos θ2) P(u → 0; p)``
     nominal_pressure : p0, Pa, > 0, batch shape
     spectrum : power spectrum, C in m^4, scalar or batched
     skin : moduli in Pa, thickness in m; broadcasts with the spectrum
@@ -267,11 +271,13 @@ def capillary_state_at_gap(
     case = _flatten(kelvin_gap, nominal_pressure, spectrum, skin, surface_tension, contact_angle_skin,
                     contact_angle_counterface, area_correction, closure)  # fmt: skip
     with np.errstate(all="ignore"):
-        possible = (case.wanted >= 0) & np.isfinite(case.separation * case.pull)[:, None]
+        possible = (case.wanted >= 0) & np.isfinite(case.separation * case.wetting_tension)[:, None]
         flooded = possible & (case.wanted == np.inf)
         wanted = np.where(possible & ~flooded, case.wanted, case.separation[:, None])
         gap = np.maximum(wanted, _NARROW)
-        x, solutions = roots_at_gaps(case.source, case.pressure, case.pull, gap, branch == "retreat", count)
+        x, solutions = roots_at_gaps(
+            case.source, case.pressure, case.wetting_tension, gap, branch == "retreat", count
+        )
         filled, mean = filled_at(case.source, x, gap)
         solved = _Solved(gap, filled.area, mean, filled.film, solutions)
         return _finish(case, solved, flooded, possible, wanted / gap)
@@ -282,7 +288,7 @@ class _Case(NamedTuple):
 
     source: GapSource
     pressure: FloatArray
-    pull: FloatArray
+    wetting_tension: FloatArray
     separation: FloatArray
     wanted: FloatArray
     shape: tuple[int, ...]
@@ -324,9 +330,15 @@ def _flatten(
     )
     with np.errstate(all="ignore"):
         wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
-        pull = np.where((tension >= 0) & (tension < np.inf), tension, np.nan) * wetting
+        wetting_tension = np.where((tension >= 0) & (tension < np.inf), tension, np.nan) * wetting
         pressure = np.where(pressure > 0, pressure, np.nan)
-    shapes = [*batch_shapes(spectrum, skin), pressure.shape, pull.shape, gamma.shape, films.shape[:-1]]
+    shapes = [
+        *batch_shapes(spectrum, skin),
+        pressure.shape,
+        wetting_tension.shape,
+        gamma.shape,
+        films.shape[:-1],
+    ]
     batch = np.broadcast_shapes(*shapes)
 
     def flat(value: FloatArray) -> FloatArray:
@@ -341,7 +353,9 @@ def _flatten(
     )[:, 0]
     columns = films.shape[-1] if films.ndim else 1
     rows = np.broadcast_to(films, (*batch, columns)).reshape(len(pressure), columns)
-    return _Case(source, pressure, flat(pull), separation, rows, (*batch, columns) if films.ndim else batch)
+    return _Case(
+        source, pressure, flat(wetting_tension), separation, rows, (*batch, columns) if films.ndim else batch
+    )
 
 
 def _finish(
@@ -352,7 +366,7 @@ def _finish(
     Gaps are ``narrower`` by that factor than those that were solved.
     """
 
-    attraction = np.where(flooded, 0.0, case.pull[:, None] / solved.gap * solved.wet)
+    attraction = np.where(flooded, 0.0, case.wetting_tension[:, None] / solved.gap * solved.wet)
     known = possible & np.isfinite(attraction)
 
     def choose(bridged: FloatArray, full: FloatArray) -> FloatArray:

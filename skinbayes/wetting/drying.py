@@ -26,15 +26,15 @@ class DryingCurve(NamedTuple):
     film_thickness : mean film over the track, m
     relative_contact_area : A/A0 averaged over the track, dimensionless
     friction_coefficient : μ, dimensionless
-    flooded_share : share of the track that is flooded, dimensionless
-    dry_share : share of the track without film, dimensionless; the rest is bridged
+    flooded_fraction : fraction of the track that is flooded, dimensionless
+    dry_fraction : fraction of the track without film, dimensionless; the rest is bridged
     """
 
     film_thickness: FloatArray
     relative_contact_area: FloatArray
     friction_coefficient: FloatArray
-    flooded_share: FloatArray
-    dry_share: FloatArray
+    flooded_fraction: FloatArray
+    dry_fraction: FloatArray
 
 
 class DryingFeatures(NamedTuple):

@@ -103,8 +103,9 @@ def film_contact(
 ) -> FilmContact:
     """Contact area of drying skin against the film, flooded, bridged and dry (Sect. 5 and Figs. 8 and 9 of the paper).
 
-    Flooded skin carries p0 alone, bridged skin p0 and the pull of `capillary_state`, dry skin p0 with the modulus of dry stratum
-    corneum, other solids with their own; the area of each is elastoplastic. Skin counts as dry below ``film_floor``.
+    Flooded skin carries p0 alone, bridged skin p0 and the capillary pressure of `capillary_state`, dry skin p0 with the modulus
+    of dry stratum corneum, other solids with their own; the area of each is elastoplastic. Skin counts as dry below
+    ``film_floor``.
 
     Parameters
     ----------
@@ -128,15 +129,15 @@ def film_contact(
 
     Returns
     -------
-    contact : `FilmContact` with S the batch shape; nan where a parameter is impossible, and but for the dry area where the pull
-        on the way down to the floor exceeds the load more than a thousand times
+    contact : `FilmContact` with S the batch shape; nan where a parameter is impossible, and but for the dry area where the
+        capillary pressure on the way down to the floor exceeds the load more than a thousand times
 
     Notes
     -----
-    The floor matters: at a fixed wet modulus the pull grows without bound as the film goes to zero, since water then sits in
-    gaps of nanometres, and μ would pass through a second, spurious peak. With the paper's skin p_a is smallest at a film of 27 nm
-    and exceeds its maximum in the µm range again below 0.2 nm. How skin hardens as it dries is not known; the curve in ln E0 is
-    a description.
+    The floor matters: at a fixed wet modulus the capillary pressure grows without bound as the film goes to zero, since water
+    then sits in gaps of nanometres, and μ would pass through a second, spurious peak. With the paper's skin p_a is smallest at
+    a film of 27 nm and exceeds its maximum in the µm range again below 0.2 nm. How skin hardens as it dries is not known; the
+    curve in ln E0 is a description.
 
     References
     ----------
@@ -185,15 +186,15 @@ def film_contact(
         return np.ascontiguousarray(np.broadcast_to(value, batch)).reshape(-1)
 
     with np.errstate(all="ignore"):
-        pull = np.where(tension >= 0, tension, np.nan) * np.maximum(cosine_sum(first, second), 0.0)
+        wetting_tension = np.where(tension >= 0, tension, np.nan) * np.maximum(cosine_sum(first, second), 0.0)
         surface, gamma = map_spectrum(spectrum, flat), flat(gamma) if gamma.size > 1 else gamma.reshape(())
         height = np.broadcast_to(rms_height(surface), (prod(batch),))
-        load, pull, limit = (
-            flat(x) for x in (np.where((load > 0) & (load < np.inf), load, np.nan), pull, limit)
+        load, wetting_tension, limit = (
+            flat(x) for x in (np.where((load > 0) & (load < np.inf), load, np.nan), wetting_tension, limit)
         )
         dry = None if dry is None else flat(dry)
         flat_skin = map_skin(skin, flat)
-        bridged = Bridged(load, pull, GapSource(surface, flat_skin, gamma, closure), height, table)
+        bridged = Bridged(load, wetting_tension, GapSource(surface, flat_skin, gamma, closure), height, table)
 
         lowest = np.where(flat(floor) > 0, flat(floor), np.nan)
         if half is None and closure == "gaussian":
@@ -217,7 +218,7 @@ def film_contact(
         stiff = bridged if dry is None else bridged.with_layer(dry)
         dry_area = np.exp(_log_area(stiff.source, limit, load[:, None]))[:, 0]
         doubtful = (
-            pull
+            wetting_tension
             + lowest
             + (0.0 if half is None else np.where(_possible(flat(half), flat(power)), 0.0, np.nan))
         )
@@ -279,15 +280,15 @@ def _hardened(
     moduli = wet[:, None] * np.exp(np.log(dry / wet)[:, None] * lobatto(_MODULI))
     many = bridged.select(rows).with_layer(moduli.reshape(-1))
     # without any bridges all films press alike
-    distinct = films if (bridged.pull > 0).any() else films[:, :1]
+    distinct = films if (bridged.wetting_tension > 0).any() else films[:, :1]
     pressure = np.exp(many.log_pressure(distinct[rows]))
     areas = np.broadcast_to(_log_area(many.source, limit[rows], pressure), (rows.size, _FILMS))
     curves = _finer(areas).reshape(dry.size, _MODULI, _POINTS)
     parts = coefficients(np.ascontiguousarray(np.moveaxis(curves, 1, 2)).reshape(-1, _MODULI, 1))[..., 0]
-    # ln of the wet share w^k/(1 + w^k) of ln E0, which may be too small for a number itself
+    # ln of the wet fraction w^k/(1 + w^k) of ln E0, which may be too small for a number itself
     steep = np.where(_possible(half, power), power, np.nan)[:, None]
-    log_share = -np.logaddexp(0.0, steep * np.log(half[:, None] / grid))
-    left = -np.expm1(log_share - log_share[:, -1:])  # 0 where the gap is flooded
+    log_fraction = -np.logaddexp(0.0, steep * np.log(half[:, None] / grid))
+    left = -np.expm1(log_fraction - log_fraction[:, -1:])  # 0 where the gap is flooded
     return series(parts[..., None], 2 * left.reshape(-1, 1) - 1).reshape(grid.shape)
 
 

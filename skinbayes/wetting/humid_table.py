@@ -1,6 +1,6 @@
-"""Pull of capillary bridges in humid air, interpolated in the share of the gaps that they span.
+"""Capillary pressure of bridges in humid air, interpolated in the fraction of the gaps that they span.
 
-Air sets the Laplace pressure and the largest gap d_K that is wet; the skin answers with the share F of its area whose gaps are
+Air sets the Laplace pressure and the largest gap d_K that is wet; the skin answers with the fraction F of its area whose gaps are
 narrower. F varies smoothly and scales: a surface k times as high under k times the load has gaps k times as wide, and moduli
 scale with loads. What is left are the load and the gap over height and modulus of the tissue, the stiffness of the layer over
 that of the tissue, and the thickness of the layer. On a grid of these F is computed once; a state is then the root of one
@@ -39,11 +39,12 @@ _BULK, _HEIGHT = 2e4, 2e-5  # Pa and m; any would do
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HumidTable:
-    """Share of the area that bridges can span, for skins in a box of dimensionless groups.
+    """Fraction of the area that bridges can span, for skins in a box of dimensionless groups.
 
     Attributes
     ----------
-    box : of the groups of `humid_groups`, dimensionless or ln of SI values; its loads reach to those with the whole pull
+    box : of the groups of `humid_groups`, dimensionless or ln of SI values; its loads reach to those with the whole Laplace
+        pressure
     axes : group to its first node and number of nodes, for those groups that vary, dimensionless
     coefficients : of the cubic spline of ln F on the grid of ``axes``, dimensionless
 
@@ -57,10 +58,10 @@ class HumidTable:
     coefficients: FloatArray
 
     def covers(self, groups: Places, strength: FloatArray) -> BoolArray:
-        """Tell which members of a flat batch lie in the box up to the whole pull p_K/p0 = ``strength``, shape ``(M,)``."""
+        """Tell which members of a flat batch lie in the box up to the Laplace pressure p_K/p0 = ``strength``, shape ``(M,)``."""
         return self.box.covers(groups, {**groups, "load": groups["load"] + np.log1p(strength)})
 
-    def share(self, groups: Places) -> FloatArray:
+    def fraction(self, groups: Places) -> FloatArray:
         """F, dimensionless, of the shape of the groups; whatever the spline has outside the box."""
         places = [(groups[name] - start) / _STEPS[name] for name, (start, _) in self.axes.items()]
         shape = np.broadcast_shapes(*(np.shape(x) for x in places))
@@ -86,8 +87,8 @@ class HumidTable:
         rise : ln p/p0, dimensionless, shape ``(M,)``
         """
 
-        def excess(x: FloatArray, at: Places, pull: FloatArray) -> FloatArray:
-            return np.asarray(x - np.log1p(pull * self.share({**at, "load": at["load"] + x})))
+        def excess(x: FloatArray, at: Places, strength: FloatArray) -> FloatArray:
+            return np.asarray(x - np.log1p(strength * self.fraction({**at, "load": at["load"] + x})))
 
         low = np.full(strength.shape, np.nan)
         rows = np.flatnonzero(np.isfinite(strength + sum(groups.values())))
@@ -95,7 +96,7 @@ class HumidTable:
         while rows.size:
             rungs: FloatArray = _RUNG * np.arange(first + 1, first + span + 1, dtype=np.float64)
             at = {name: value[rows, None] for name, value in groups.items()}
-            # from the whole pull on there is no root left to find
+            # from the whole Laplace pressure on there is no root left to find
             above = (excess(rungs, at, strength[rows, None]) > 0) | (rungs >= end[rows, None])
             now = above.any(axis=1)
             low[rows[now]] = _RUNG * (first + above[now].argmax(axis=1))
@@ -107,7 +108,7 @@ class HumidTable:
 def humid_groups(
     pressure: FloatArray, gap: FloatArray, *, height: FloatArray, skin: Solid
 ) -> dict[str, FloatArray]:
-    """Groups of parameters on which the share of bridged gaps depends, up to scale (from Eqs. 3 to 7 of the paper).
+    """Groups of parameters on which the fraction of bridged gaps depends, up to scale (from Eqs. 3 to 7 of the paper).
 
     ``load = ln[p0/(E1 h_rms)]``, ``gap = ln(d_K/h_rms)``, ``stiffness = ln(E0/E1)``, ``layer_thickness = ln d``; lengths in m. A
     homogeneous solid has the first two. Poisson ratios, γ and the shape of the spectrum are those of the table.
@@ -152,11 +153,12 @@ def humid_table(
     most: int = 250_000,
     progress: Progress | None = None,
 ) -> HumidTable | None:
-    """Compute the share of bridged gaps on a grid of groups, for many skins to be interpolated (Eq. 7, Appendix A of the paper).
+    """Compute the fraction of bridged gaps on a grid of groups, to be interpolated for many skins (Eq. 7, App. A of the paper).
 
     Parameters
     ----------
-    box : of the groups of `humid_groups`, dimensionless or ln of SI values, the upper end of ``load`` with the pull added
+    box : of the groups of `humid_groups`, dimensionless or ln of SI values, the upper end of ``load`` with the capillary
+        pressure added
     spectrum : power spectrum, C in m^4, scalar; its height does not matter
     skin : Poisson ratios, dimensionless, scalar; moduli in Pa and thickness in m do not matter
     area_correction : γ, dimensionless, 0 < γ ≤ 1, scalar
@@ -187,7 +189,7 @@ def humid_table(
     >>> ends = {name: (value[0], value[0] + (name in ("load", "gap"))) for name, value in groups.items()}
     >>> table = humid_table(Box(ends), spectrum=named_surface("paper_reference"), skin=skin,
     ...     area_correction=np.array(0.42))
-    >>> print(table.axes["load"][1], f"{table.share(groups)[0]:.3e}")
+    >>> print(table.axes["load"][1], f"{table.fraction(groups)[0]:.3e}")
     14 1.428e-04
     """
     nodes = {}
@@ -222,12 +224,12 @@ def humid_table(
         place, out = mixture.centre / mixture.width, 1 / mixture.width
         # both are lower tails, whose difference keeps its digits
         below = (ndtr(each * out - place) - ndtr(-each * out - place) for each in gap)
-        return np.stack([(mixture.share * part).sum(axis=-1) for part in below], axis=-1)
+        return np.stack([(mixture.fraction * part).sum(axis=-1) for part in below], axis=-1)
 
     values = Tasks(progress=progress).at("skins", spanned, {_ONE: np.arange(float(total)), **skins}, _BLOCK)
     if not np.isfinite(values).all():
         return None
     grid = np.moveaxis(values.reshape(*shape.values(), pressure.size, gap.size), (-2, -1), (0, 1))
     axes = {name: (float(x[0]), x.size) for name, x in nodes.items() if x.size > 1}
-    log_share = np.log(np.maximum(grid, 0.0) + _LITTLE).reshape([count for _, count in axes.values()])
-    return HumidTable(box=box, axes=axes, coefficients=spline_filter(log_share, order=3))
+    log_fraction = np.log(np.maximum(grid, 0.0) + _LITTLE).reshape([count for _, count in axes.values()])
+    return HumidTable(box=box, axes=axes, coefficients=spline_filter(log_fraction, order=3))

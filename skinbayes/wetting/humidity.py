@@ -163,9 +163,9 @@ def capillary_state_in_humid_air(
     -----
     With E0 = 70 MPa the area hardly changes with humidity, with E0 = 7 MPa the bridges pull skin into nearly complete contact in
     dry air. Where, between 60 and 95 %, the soft curve comes down depends on the closure and is no result of the theory. Below
-    about 12 % d_K is smaller than a molecule, see `is_below_molecule`. At both ends the pull is continuous: towards saturation
-    d_K grows beyond all gaps and p_K falls to 0, towards dry air p_K grows as the area that d_K reaches shrinks, and the pull
-    comes to γ_w (cos θ1 + cos θ2) P(u → 0).
+    about 12 % d_K is smaller than a molecule, see `is_below_molecule`. At both ends the capillary pressure is continuous:
+    towards saturation d_K grows beyond all gaps and p_K falls to 0, towards dry air p_K grows as the area that d_K reaches
+    shrinks, and the capillary pressure comes to γ_w (cos θ1 + cos θ2) P(u → 0).
 
     References
     ----------
@@ -271,5 +271,5 @@ def softened_modulus(
     young_modulus_dry: FloatArray, young_modulus_wet: FloatArray, wetness: FloatArray, sharpness: FloatArray
 ) -> FloatArray:
     """Geometric mean of two moduli (Pa) with the weight ``w^k/(1 + w^k)`` of the wet one, w = ``wetness`` from 0 to inf."""
-    share = 1 / (1 + np.exp(-sharpness * np.log(wetness)))
-    return np.asarray(young_modulus_dry * np.exp(share * np.log(young_modulus_wet / young_modulus_dry)))
+    fraction = 1 / (1 + np.exp(-sharpness * np.log(wetness)))
+    return np.asarray(young_modulus_dry * np.exp(fraction * np.log(young_modulus_wet / young_modulus_dry)))

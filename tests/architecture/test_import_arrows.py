@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 import pytest
 from source_tree import HEAVY, ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
 
-WORDS = {"errors", "arrays", "constants", "vocabulary"}
+WORDS = {"errors", "arrays", "constants", "phrases", "vocabulary"}
 FILES = {"atomic", "sealed"}
 PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
 STATISTICS = {"statistics", "sampling", "diagnose"}
@@ -20,6 +20,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "constants": set(),
     "atomic": set(),
     "sealed": set(),
+    "phrases": set(),
     "synonyms": set(),
     "version": set(),
     "vocabulary": {"errors", "synonyms"},
@@ -35,7 +36,7 @@ MAY_KNOW: dict[str, set[str]] = {
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
     "sampling": {"errors", "arrays", *FILES, "statistics"},
-    "diagnose": {"errors", "arrays", "statistics"},
+    "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
     "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
@@ -65,7 +66,7 @@ HOMES: dict[str, set[str]] = {
     "h5py": {"sampling", "fit"},
     "jinja2": {"report"},
     "matplotlib": {"plot", "report"},
-    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "synonyms", "vocabulary", *FILES},
+    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "phrases", "synonyms", "vocabulary", *FILES},
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
     "platformdirs": {"emulation"},

@@ -194,7 +194,7 @@ REFUSED: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "impossible value": (
         ("logs.csv", *AXES, *ERRORS, "-o", "n.csv"), ("logs.csv, line 1, abscissa", "found -2 mN/m", ">= 0 N/m")
     ),
-    "a share of zero": (
+    "a fraction of zero": (
         ("logs.csv", "--abscissa", "friction_coefficient_pressure_flow [1]", *AXES[2:], *ERRORS, "-o", "n.csv"),
         ("logs.csv, line 3", "expected > 0", "absolute error with --abscissa-error"),
     ),

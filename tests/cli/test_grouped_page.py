@@ -1,4 +1,4 @@
-"""The page and the document of grouped data with a yardstick, from the command line."""
+"""The page and the document of grouped data with a baseline model, from the command line."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ scale = { half_normal = 0.5 }
 """
 
 LAW = """
-yardsticks = ["null.toml"]
+baseline_models = ["null.toml"]
 title = "A plateau and a rise"
 forward = "stribeck-descriptive"
 [data]
@@ -74,15 +74,15 @@ def grouped(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_document_has_groups_validity_ridges_and_priors(
     grouped: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    outcome = run(capsys, "report", grouped, "--no-yardsticks", "--json", "-o", tmp_path / "page.html")
+    outcome = run(capsys, "report", grouped, "--no-baselines", "--json", "-o", tmp_path / "page.html")
     document = outcome.document()
-    assert outcome.status == 0 and document["yardsticks"] is None and document["validity"] == {}
+    assert outcome.status == 0 and document["baseline_models"] is None and document["validity"] == {}
     assert list(document["groups"]) == ["person", "liquid"]
     effects = document["groups"]["liquid"]["effects"]
     assert list(effects) == ["water", "cream", "honey", "<tar>"]
     assert all(entry["q05"] < entry["median"] < entry["q95"] for entry in effects.values())
     assert set(document["priors"]) == set(load_fit(grouped).names)
-    assert not (grouped / "yardsticks").exists()
+    assert not (grouped / "baselines").exists()
 
 
 def test_page_shows_groups_and_escapes_their_names(grouped: Path, tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_page_shows_groups_and_escapes_their_names(grouped: Path, tmp_path: Path
         assert heading in said
     assert "marks no predictions as doubtful" in said
     assert "&lt;tar&gt;" in text and "<tar>" not in text
-    assert "Yardsticks" not in said
+    assert "Baseline models" not in said
 
 
 def test_a_fit_that_loses_says_so_at_the_top(grouped: Path, tmp_path: Path) -> None:
@@ -112,23 +112,23 @@ def test_a_fit_that_loses_says_so_at_the_top(grouped: Path, tmp_path: Path) -> N
     )
     text = write_report(load_fit(grouped), tmp_path / "page.html", losing).read_text(encoding="utf-8")
     said = words(Page(text).text)
-    assert said.index("LOSES TO A YARDSTICK") < said.index("by 7.1 ± 2.3") < said.index("In short")
+    assert said.index("LOSES TO A BASELINE MODEL") < said.index("by 7.1 ± 2.3") < said.index("In short")
     assert said.count("by 7.1 ± 2.3") == 2 and said.count("'law' equals 'null'") == 1
     assert "How far these numbers can be trusted" in said and "&lt;null&gt;" in text
 
 
-def test_yardsticks_are_fitted_once_and_shown(
+def test_baseline_models_are_fitted_once_and_shown(
     grouped: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     outcome = run(capsys, "report", grouped, "--json", "-o", tmp_path / "page.html")
-    yardsticks = outcome.document()["yardsticks"]
+    baseline_models = outcome.document()["baseline_models"]
     assert outcome.status == 0
-    assert {entry["yardstick"] for entry in yardsticks["standings"]} == {"null"}
+    assert {entry["baseline_model"] for entry in baseline_models["ranking"]} == {"null"}
     said = words(Page((tmp_path / "page.html").read_text(encoding="utf-8")).text)
-    for sentence in yardsticks["sentences"]:
+    for sentence in baseline_models["sentences"]:
         assert words(sentence) in said
-    assert yardsticks["loses"] == ("LOSES TO A YARDSTICK" in said)
-    stored = grouped / "yardsticks" / "null" / "result.nc"
+    assert baseline_models["loses"] == ("LOSES TO A BASELINE MODEL" in said)
+    stored = grouped / "baselines" / "null" / "result.nc"
     made = stored.stat().st_mtime_ns
     assert run(capsys, "report", grouped).status == 0
     assert stored.stat().st_mtime_ns == made

@@ -50,15 +50,15 @@ def table(folder, header: str, *rows: tuple[float, ...]):
 @pytest.mark.parametrize("model", MODELS)
 def test_dry_skin_is_plastic_and_saturated_skin_flooded(predict, model):
     humidity, found, _ = predict(model)
-    friction, pull = found["friction_coefficient"], found["capillary_pressure"]
+    friction, capillary_pressure = found["friction_coefficient"], found["capillary_pressure"]
     assert (humidity[1], humidity[-1]) == (pytest.approx(0.1), 1.0)
     # every contact has yielded: μ = σ_f/σ_Y, and what the bridges add to the load
-    assert friction[1] == pytest.approx(SHEAR / 50e6 * (1 + pull[1] / LOAD), rel=1e-3)
+    assert friction[1] == pytest.approx(SHEAR / 50e6 * (1 + capillary_pressure[1] / LOAD), rel=1e-3)
     assert friction[1] == pytest.approx(0.3, rel=0.02)
     flooded, _ = PlainContact(layer=7e6).area(LOAD)
     assert friction[-1] == pytest.approx(SHEAR * flooded / LOAD, rel=1e-4)
     assert friction[-1] == pytest.approx(1.42, abs=0.005)
-    assert pull[-1] == 0.0
+    assert capillary_pressure[-1] == 0.0
     assert found["kelvin_radius"][-1] == np.inf
     np.testing.assert_allclose(friction, SHEAR / LOAD * found["relative_contact_area"], rtol=1e-12)
 
@@ -114,7 +114,7 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
     words += [f"contact_angle_skin={first} deg", f"contact_angle_counterface={second} deg"]
     words += [f"temperature={kelvin} K", f"relative_humidity={humidity}", "frictional_shear_stress=8 MPa"]
     found = predict("humid-air" if closure == "gaussian" else "humid-air:sharp", *words)[1]
-    pull, radius = found["capillary_pressure"][0], found["kelvin_radius"][0]
+    capillary_pressure, radius = found["capillary_pressure"][0], found["kelvin_radius"][0]
     body = PlainContact(**plain)
     skin = LayeredSkin(
         young_modulus_layer=body.layer,
@@ -141,20 +141,22 @@ def test_other_skin_against_direct_calls_and_independent_code(predict, case, clo
         area_correction=correction,
         closure=closure,
     )
-    assert pull == pytest.approx(state.capillary_pressure, rel=1e-9)
-    assert pull > 0.01 * load
+    assert capillary_pressure == pytest.approx(state.capillary_pressure, rel=1e-9)
+    assert capillary_pressure > 0.01 * load
     # Kelvin's equation for a mole of water, and Eqs. 5 to 7 with the public gap distribution
     volume = 18.015e-6 / (1 - 2.07e-4 * (kelvin - 293.15) + 0.0018) if kelvin > 280 else 18.016e-6
     assert surface_tension_of_water(kelvin) / radius * volume == pytest.approx(
         8.314462618 * kelvin * math.log(1 / humidity), rel=0.01
     )
-    gaps = gap_distribution(load + pull, surface, skin=skin, area_correction=correction, closure=closure)
+    gaps = gap_distribution(
+        load + capillary_pressure, surface, skin=skin, area_correction=correction, closure=closure
+    )
     wet = (
         gaps.cumulative(radius * sum(map(math.cos, map(math.radians, (first, second)))))
         - gaps.contact_fraction
     )
-    assert pull == pytest.approx(surface_tension_of_water(kelvin) / radius * wet, rel=1e-8)
-    area = sum(body.area(load + pull, correction=correction, yield_stress=limit))
+    assert capillary_pressure == pytest.approx(surface_tension_of_water(kelvin) / radius * wet, rel=1e-8)
+    area = sum(body.area(load + capillary_pressure, correction=correction, yield_stress=limit))
     assert found["relative_contact_area"][0] == pytest.approx(area, rel=2e-4)
     assert found["friction_coefficient"][0] == pytest.approx(8e6 * area / load, rel=2e-4)
 

@@ -36,7 +36,7 @@ def test_a_copy_is_the_model_under_another_name(
         "rows",
         "observables",
         "groups",
-        "yardsticks",
+        "baseline_models",
         "derived",
     ):
         assert getattr(mine, name) == getattr(shipped, name), name
@@ -145,7 +145,7 @@ def test_what_new_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
         (["forearm-glass", "-o", tmp_path / "a.txt"], "ends in .toml"),
         (["forearm-glass", "-o", tmp_path / "a.toml", "--data", tmp_path / "no.csv"], "no.csv"),
         (["contact-area", "-o", tmp_path / "a.toml", "--data", "adams2007-forearm-glass"], "[data]"),
-        (["finger-stribeck", "-o", tmp_path / "finger-null.toml"], "yardsticks"),
+        (["finger-stribeck", "-o", tmp_path / "finger-null.toml"], "baseline_models"),
     ):
         refused = run(capsys, "new", *words)
         assert refused.status == 2 and said in refused.errors

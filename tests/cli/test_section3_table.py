@@ -39,7 +39,7 @@ def test_dry_skin(predict):
     # fully plastic: A/A0 = p0/σ_Y, whatever the roughness
     assert area(dry) == pytest.approx(6.83e3 / 50e6, rel=1e-6)
     assert area(dry) == pytest.approx(1.366e-4, rel=1e-3)
-    assert dry["plastic_share"][-1] == pytest.approx(1.0, abs=1e-6)
+    assert dry["plastic_fraction"][-1] == pytest.approx(1.0, abs=1e-6)
     elastic = predict(
         "young_modulus_layer=1 GPa", "area_correction=none"
     )  # fmt: skip
@@ -51,12 +51,12 @@ def test_dry_skin(predict):
     [("none", (7.1e4, 8.3e4, 1.1e5)), ("0.42", (8.4e4, 1.0e5, 1.4e5))],
 )
 def test_where_dry_skin_yields(predict, correction, wavevectors):
-    def share(log_q: float) -> float:
+    def fraction(log_q: float) -> float:
         settings = (*DRY, f"area_correction={correction}", f"wavevector={float(np.exp(log_q))!r} 1/m")
-        return predict(*settings)["plastic_share"][0]
+        return predict(*settings)["plastic_fraction"][0]
 
     for wanted, expected in zip((0.10, 0.50, 0.99), wavevectors, strict=True):
-        found = np.exp(brentq(lambda u, w=wanted: share(u) - w, np.log(3e4), np.log(1e6), xtol=1e-3))
+        found = np.exp(brentq(lambda u, w=wanted: fraction(u) - w, np.log(3e4), np.log(1e6), xtol=1e-3))
         assert found == pytest.approx(expected, rel=0.05)  # two digits are given
 
 

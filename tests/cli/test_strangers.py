@@ -83,7 +83,7 @@ def test_every_short_help_fits(capsys: pytest.CaptureFixture[str]) -> None:
     assert shown.status == 0 and "..." not in shown.output.partition("Commands:")[2]
 
 
-def test_costly_physics_is_checked_with_few_evaluations(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_expensive_physics_is_checked_with_few_evaluations(monkeypatch: pytest.MonkeyPatch) -> None:
     """2,800 solutions took 30 s."""
     problem, counts = load_problem("drying-glass", settings={"closure": "sharp"}), []
     evaluate = Problem.evaluate

@@ -42,7 +42,9 @@ def test_the_case_of_the_paper(curve):
 def test_parts_add_up_and_films_grow(curve):
     assert_allclose(sum(curve[part] for part in PARTS), curve["friction_coefficient"], rtol=1e-12)
     assert (np.diff(curve["friction_coefficient_boundary"]) < 0).all()
-    assert (np.diff(curve["asperity_load_share"]) <= 0).all() and curve["asperity_load_share"][0] > 0.999
+    assert (np.diff(curve["asperity_load_fraction"]) <= 0).all() and curve["asperity_load_fraction"][
+        0
+    ] > 0.999
     assert (np.diff(curve["minimum_film_thickness"]) > 0).all()
     assert (curve["minimum_film_thickness"][10:] <= curve["central_film_thickness"][10:]).all()
 

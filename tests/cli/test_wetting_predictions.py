@@ -36,7 +36,7 @@ def predict(capsys):
 
 
 @pytest.mark.parametrize(
-    ("model", "angle", "pull", "film", "separation"),
+    ("model", "angle", "strength", "film", "separation"),
     [
         ("capillary-film", 0, 0.62, 5.8e-6, 11.05e-6),
         ("capillary-film", 20, 0.585, 5.8e-6, 11.15e-6),
@@ -44,18 +44,18 @@ def predict(capsys):
         ("capillary-film:sharp", 20, 0.705, 9.7e-6, 10.8e-6),
     ],
 )
-def test_skin_on_glass(predict, model, angle, pull, film, separation):
+def test_skin_on_glass(predict, model, angle, strength, film, separation):
     rows, found = predict(model, f"contact_angle_counterface={angle} deg")
-    films, strength = rows["film_thickness"], found["capillary_pressure"] / LOAD
-    top = np.argmax(strength)
-    assert strength[top] == pytest.approx(pull, abs=0.006)
+    films, reached = rows["film_thickness"], found["capillary_pressure"] / LOAD
+    top = np.argmax(reached)
+    assert reached[top] == pytest.approx(strength, abs=0.006)
     # the maximum is broad, most of all with sharp gaps, and the grid has steps of 0.25 µm
     assert films[top] == pytest.approx(film, abs=0.5e-6)
     assert found["mean_separation"][top] == pytest.approx(separation, abs=0.06e-6)
     assert found["mean_separation"][-1] == pytest.approx(13.5e-6, abs=0.05e-6)
     flooded = films > 13.55e-6
-    assert np.all(strength[flooded] == 0)
-    assert np.all(strength[~flooded] > 0)
+    assert np.all(reached[flooded] == 0)
+    assert np.all(reached[~flooded] > 0)
     # nothing but water and contact where the gap is full
     np.testing.assert_allclose((found["wet_area"] + found["relative_contact_area"])[flooded], 1.0, rtol=1e-12)
 
@@ -127,7 +127,7 @@ def test_other_skin_against_scalars_and_independent_code(predict, case, closure)
     assert found["mean_separation"] == pytest.approx(
         mean_separation(pressure, surface, skin=skin, area_correction=correction), rel=1e-3
     )
-    # Eqs. 5 to 7: the pull belongs to a Kelvin length up to which the gaps hold the water
+    # Eqs. 5 to 7: the capillary pressure belongs to a Kelvin length up to which the gaps hold the water
     kelvin = (
         0.072
         * sum(map(math.cos, map(math.radians, (first, second))))

@@ -31,17 +31,17 @@ def with_effects(fit: Fit, column: str, centres: np.ndarray, width: float, scale
     return replace(fit, groups={**fit.groups, "posterior": posterior})
 
 
-def with_flags(fit: Fit, **shares: np.ndarray) -> Fit:
-    """The fit with the share of the draws in which each row is flagged, by flag; all mean the same."""
+def with_flags(fit: Fit, **fractions: np.ndarray) -> Fit:
+    """The fit with the fraction of the draws in which each row is flagged, by flag; all mean the same."""
     rows = fit.groups["observed_data"]["row"]
     validity = xarray.Dataset(
-        {name: (("row",), values) for name, values in shares.items()}, coords={"row": rows}
+        {name: (("row",), values) for name, values in fractions.items()}, coords={"row": rows}
     )
     assert fit.problem is not None
     forward = replace(
         fit.problem.forward,
         flags=lambda inputs, tables: {},
-        flag_meanings=dict.fromkeys(shares, MEANING),
+        flag_meanings=dict.fromkeys(fractions, MEANING),
     )
     problem = replace(fit.problem, forward=forward)
     return replace(fit, groups={**fit.groups, "validity": validity}, problem=problem)

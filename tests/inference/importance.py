@@ -93,8 +93,8 @@ def importance_sample(problem: Problem, rng: np.random.Generator, least: float =
     target = problem.target()
     draws = target.transform.forward(problem.draw_prior(rng, PRIOR_DRAWS))
     ratio = problem.log_likelihood(target.transform.inverse(draws))
-    shares, power = tempered(ratio, 8 * problem.dimension)
-    proposals = [_about(draws, shares, 1.5)]
+    fractions, power = tempered(ratio, 8 * problem.dimension)
+    proposals = [_about(draws, fractions, 1.5)]
     evaluations = PRIOR_DRAWS
     rounds: list[tuple[np.ndarray, np.ndarray]] = []
     for _ in range(ROUNDS):
@@ -104,9 +104,9 @@ def importance_sample(problem: Problem, rng: np.random.Generator, least: float =
         known = np.concatenate([positions for positions, _ in rounds])
         density = np.concatenate([values for _, values in rounds])
         ratio = density - _mixture(proposals[-REMEMBERED:], known)
-        shares, power = tempered(ratio, 16 * problem.dimension)
-        ready = power == 1.0 and 1.0 / np.square(shares).sum() > least
-        proposals.append(_about(known, shares, 1.0 if power == 1.0 else 1.3))
+        fractions, power = tempered(ratio, 16 * problem.dimension)
+        ready = power == 1.0 and 1.0 / np.square(fractions).sum() > least
+        proposals.append(_about(known, fractions, 1.0 if power == 1.0 else 1.3))
         if not ready:
             continue
         chosen = proposals[-REMEMBERED:]
@@ -123,11 +123,11 @@ def tempered(ratio: np.ndarray, enough: float) -> tuple[np.ndarray, float]:
     """Weights ∝ exp(power · ratio) with the largest power <= 1 that leaves an effective size above ``enough``; and the power."""
     relative = np.where(np.isfinite(ratio), ratio, -np.inf) - np.max(ratio[np.isfinite(ratio)])
     for power in np.geomspace(1.0, 1e-4, 60):
-        shares = np.exp(power * relative)
-        shares /= shares.sum()
-        if 1.0 / np.square(shares).sum() > enough:
+        fractions = np.exp(power * relative)
+        fractions /= fractions.sum()
+        if 1.0 / np.square(fractions).sum() > enough:
             break
-    return shares, float(power)
+    return fractions, float(power)
 
 
 def _about(positions: np.ndarray, weights: np.ndarray, wider: float) -> Student:

@@ -74,9 +74,9 @@ def recover(maker: Problem, simulations: int, seed: int) -> Recovered:
     )
 
 
-def inside(levels: np.ndarray, share: float) -> int:
+def inside(levels: np.ndarray, fraction: float) -> int:
     """How many central intervals of a probability hold the truth."""
-    return int(np.count_nonzero(np.abs(levels - 0.5) < share / 2))
+    return int(np.count_nonzero(np.abs(levels - 0.5) < fraction / 2))
 
 
 def failed_tests(levels: np.ndarray) -> list[str]:
@@ -88,11 +88,11 @@ def failed_tests(levels: np.ndarray) -> list[str]:
     """
     n = levels.size
     found = []
-    for share in (0.5, 0.9):
-        hits = inside(levels, share)
-        low, high = stats.binom.ppf([ALPHA / 2, 1 - ALPHA / 2], n, share)
+    for fraction in (0.5, 0.9):
+        hits = inside(levels, fraction)
+        low, high = stats.binom.ppf([ALPHA / 2, 1 - ALPHA / 2], n, fraction)
         if not low <= hits <= high:
-            found.append(f"{hits} of {n} in the {share:.0%} interval, {low:.0f} to {high:.0f} expected")
+            found.append(f"{hits} of {n} in the {fraction:.0%} interval, {low:.0f} to {high:.0f} expected")
     scores = stats.norm.ppf(levels)
     limit = stats.norm.ppf(1 - ALPHA / 2) / np.sqrt(n)
     if not abs(scores.mean()) < limit:

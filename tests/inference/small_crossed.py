@@ -164,5 +164,5 @@ def by_regression(problem: Problem, rng: np.random.Generator, count: int = 40_00
     for i in stress:
         jacobian = 0.0 if additive else (1.0 - tilt[0]) * np.log(theta[:, i])
         weight += prior[names[i]].log_density(theta[:, i]) + jacobian
-    shares = np.exp(weight - weight.max())
-    return Weighted(theta, shares / shares.sum())
+    fractions = np.exp(weight - weight.max())
+    return Weighted(theta, fractions / fractions.sum())

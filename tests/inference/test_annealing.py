@@ -40,14 +40,14 @@ def test_modes_keep_their_masses():
         left, right = (np.square((position - c) / 0.01).sum(axis=1) / 2 for c in (-1.0, 1.0))
         return np.logaddexp(np.log(0.25) - left, np.log(0.75) - right)
 
-    shares = []
+    fractions = []
     for seed in range(6):
         rng = np.random.default_rng(seed)
         start = rng.normal(size=(COUNT, 2))
         there = anneal(start, likelihood(start), 0.0, 1.0, normal, likelihood, rng)
         assert (np.abs(np.abs(there) - 1.0) < 0.06).all()
-        shares.append(float(np.mean(there[:, 0] > 0)))
-    assert np.mean(shares) == pytest.approx(0.75, abs=0.06)
+        fractions.append(float(np.mean(there[:, 0] > 0)))
+    assert np.mean(fractions) == pytest.approx(0.75, abs=0.06)
 
 
 def test_impossible_places_are_never_taken_and_nothing_moves_without_a_rise():

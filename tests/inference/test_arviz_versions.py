@@ -84,8 +84,8 @@ def test_the_posterior_predictive_check_of_arviz_accepts_the_groups(fit: Fit) ->
     made = fit.to_arviz()
     predicted = np.asarray(made["posterior_predictive"]["friction_coefficient"])
     assert predicted.shape[-1] == 11
-    share = (predicted < np.asarray(made["observed_data"]["friction_coefficient"])).mean(axis=(0, 1))
-    assert (share > 0.005).all() and (share < 0.995).all()
+    fraction = (predicted < np.asarray(made["observed_data"]["friction_coefficient"])).mean(axis=(0, 1))
+    assert (fraction > 0.005).all() and (fraction < 0.995).all()
 
 
 SCRIPT = """

@@ -51,10 +51,10 @@ def test_ranks_are_uniform_and_intervals_cover(build, tmp_path: Path) -> None:
         counts = np.histogram(levels[:, j], BINS, (0.0, 1.0))[0]
         assert stats.chisquare(counts).pvalue > 1e-3, f"{name}: ranks {counts}"
         assert stats.kstest(levels[:, j], "uniform").pvalue > 1e-3, name
-        for share in (0.5, 0.9):
-            inside = int(np.sum(np.abs(levels[:, j] - 0.5) < share / 2))
-            assert stats.binomtest(inside, SIMULATIONS, share).pvalue > 1e-3, (
-                f"{name}: {inside} in the {share:.0%} interval"
+        for fraction in (0.5, 0.9):
+            inside = int(np.sum(np.abs(levels[:, j] - 0.5) < fraction / 2))
+            assert stats.binomtest(inside, SIMULATIONS, fraction).pvalue > 1e-3, (
+                f"{name}: {inside} in the {fraction:.0%} interval"
             )
 
 

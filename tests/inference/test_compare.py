@@ -96,11 +96,11 @@ def test_standard_error_of_a_difference(fits: dict[str, Fit]) -> None:
 def test_stacking_of_two_against_a_grid(seed: int) -> None:
     rng = np.random.default_rng(seed)
     pointwise = rng.normal(-1.0, 1.0, (2, 12))
-    share = np.linspace(0.0, 1.0, 200_001)
-    score = np.log(share[:, None] * np.exp(pointwise[0]) + (1 - share[:, None]) * np.exp(pointwise[1])).sum(
-        axis=1
-    )
-    best = share[np.argmax(score)]
+    fraction = np.linspace(0.0, 1.0, 200_001)
+    score = np.log(
+        fraction[:, None] * np.exp(pointwise[0]) + (1 - fraction[:, None]) * np.exp(pointwise[1])
+    ).sum(axis=1)
+    best = fraction[np.argmax(score)]
     found = stacking_weights(pointwise)
     assert found == pytest.approx([best, 1 - best], abs=2e-3)
     # a maximum: the score there is not below the grid's best

@@ -49,7 +49,7 @@ def test_the_run_of_the_paper(closure: str, time: float, height: float, width: f
     assert found["dry_friction"][0, 0] == pytest.approx(0.3, rel=1e-3)
 
 
-def test_rows_are_told_apart_and_alike_rows_share_a_curve() -> None:
+def test_rows_are_told_apart_and_deduplicated_rows_share_a_curve() -> None:
     model = forward_model("drying-features")
     angles = np.radians([0.0, 102.0, 0.0])
     found = model.evaluate(paper_inputs(contact_angle_counterface=angles), Tables())
@@ -189,9 +189,9 @@ def test_a_table_knows_its_box() -> None:
         ),
         LayeredSkin(young_modulus_layer=moduli, young_modulus_bulk=20e3, layer_thickness=20e-6),
     )
-    load, height, pull = np.full(3, 6830.0), np.full(3, 22.4e-6), np.full(3, 0.0845)
+    load, height, wetting_tension = np.full(3, 6830.0), np.full(3, 22.4e-6), np.full(3, 0.0845)
     groups = skin_groups(
-        load, pull, height=height, spectrum=surface, skin=skin, area_correction=np.array(0.42)
+        load, wetting_tension, height=height, spectrum=surface, skin=skin, area_correction=np.array(0.42)
     )
     table = bridge_table(Box.around({n: x[:2] for n, x in groups.items()}), depth=6830.0 / 20e3 / 1e-7)
     assert table is not None

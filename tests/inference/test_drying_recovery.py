@@ -61,9 +61,9 @@ def intervals(problem: Problem, maker: Problem, rng: np.random.Generator) -> np.
     found_it = False
     for round_ in range(ROUNDS):
         if not found_it:
-            share = flattened(weight - proposal, draws.shape[1])
-        middle = share @ draws
-        spread = np.cov(draws.T, aweights=share) * (4.0 if round_ == 0 else 2.0 if found_it else 1.6)
+            fraction = flattened(weight - proposal, draws.shape[1])
+        middle = fraction @ draws
+        spread = np.cov(draws.T, aweights=fraction) * (4.0 if round_ == 0 else 2.0 if found_it else 1.6)
         root = np.linalg.cholesky(spread + 1e-12 * np.eye(middle.size))
         # tails of Student's t with 5 degrees of freedom
         normal = rng.normal(size=(1200, middle.size)) / np.sqrt(rng.chisquare(5, 1200) / 5)[:, None]
@@ -71,9 +71,9 @@ def intervals(problem: Problem, maker: Problem, rng: np.random.Generator) -> np.
         proposal = -(5 + middle.size) / 2 * np.log1p((normal**2).sum(axis=1) / 5)
         weight = problem.log_likelihood(np.exp(draws)) + log_prior(draws)
         ratio = np.where(np.isfinite(weight), weight - proposal, -np.inf)
-        share = np.exp(ratio - ratio.max())
-        share /= share.sum()
-        enough = 1 / np.square(share).sum() > 200
+        fraction = np.exp(ratio - ratio.max())
+        fraction /= fraction.sum()
+        enough = 1 / np.square(fraction).sum() > 200
         if enough and found_it:  # twice, the second time about the posterior itself and wider
             break
         found_it = enough
@@ -82,7 +82,7 @@ def intervals(problem: Problem, maker: Problem, rng: np.random.Generator) -> np.
     found = []
     for column in draws.T:
         order = np.argsort(column)
-        below = np.cumsum(share[order])
+        below = np.cumsum(fraction[order])
         found.append(np.interp([0.05, 0.95], below, column[order]))
     return np.array(found)
 
@@ -98,11 +98,11 @@ def flattened(weight: np.ndarray, dimension: int) -> np.ndarray:
     """Weights raised to the largest power that leaves a fair number of draws."""
     usable = np.where(np.isfinite(weight), weight - np.max(weight[np.isfinite(weight)]), -np.inf)
     for power in np.geomspace(1.0, 1e-4, 60):
-        share = np.exp(power * usable)
-        share /= share.sum()
-        if 1 / np.square(share).sum() > 12 * dimension:
+        fraction = np.exp(power * usable)
+        fraction /= fraction.sum()
+        if 1 / np.square(fraction).sum() > 12 * dimension:
             break
-    return share
+    return fraction
 
 
 @pytest.mark.slow

@@ -71,9 +71,9 @@ def truth(problem: Problem) -> np.ndarray:
     return np.array([TRUTH[name] for name in problem.names])
 
 
-def covers(fit: sb.Fit, problem: Problem, share: float = 0.99) -> None:
+def covers(fit: sb.Fit, problem: Problem, fraction: float = 0.99) -> None:
     for name, value in zip(problem.names, truth(problem), strict=True):
-        low, high = np.quantile(fit.draws(name), [(1 - share) / 2, (1 + share) / 2])
+        low, high = np.quantile(fit.draws(name), [(1 - fraction) / 2, (1 + fraction) / 2])
         assert low < value < high, name
 
 

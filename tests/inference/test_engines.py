@@ -182,9 +182,11 @@ def test_an_engine_from_outside_finds_the_same_posterior(problem, ensembles, eng
     for label in problem.names:
         spread = (expected.loc[label, "q95"] - expected.loc[label, "q05"]) / 3.3
         size = found.loc[label, "ess_bulk"]
-        for key, share in (("q05", 0.05), ("median", 0.5), ("q95", 0.95)):
+        for key, fraction in (("q05", 0.05), ("median", 0.5), ("q95", 0.95)):
             # density at the ends of a normal 90 % interval 0.1, in the middle 0.4
-            error = np.sqrt(share * (1 - share) * (1 / size + 1 / 2000)) / (0.4 if share == 0.5 else 0.1)
+            error = np.sqrt(fraction * (1 - fraction) * (1 / size + 1 / 2000)) / (
+                0.4 if fraction == 0.5 else 0.1
+            )
             assert abs(found.loc[label, key] - expected.loc[label, key]) < 4.5 * error * spread, (label, key)
     run = fit.provenance["sampling"]
     assert run["engine"] == type(engine).__name__ and "emcee" not in fit.provenance["versions"]
@@ -201,13 +203,13 @@ def test_everything_of_a_weighted_fit_agrees_with_its_weights(problem, weighted,
     assert weighted.theta().shape == (10_000, 2)
     summary = weighted.summary()
     for i, label in enumerate(weighted.names):
-        # by another way: the share of the weight below what is quoted
-        for key, share in (("q05", 0.05), ("median", 0.5), ("q95", 0.95)):
+        # by another way: the fraction of the weight below what is quoted
+        for key, fraction in (("q05", 0.05), ("median", 0.5), ("q95", 0.95)):
             assert weights[theta[:, i] <= summary.loc[label, key]].sum() == pytest.approx(
-                share, abs=2 * weights.max()
+                fraction, abs=2 * weights.max()
             )
             below = (weighted.draws(label) <= summary.loc[label, key]).mean()
-            assert below == pytest.approx(share, abs=0.01)
+            assert below == pytest.approx(fraction, abs=0.01)
         mean, sd = weights @ theta[:, i], np.sqrt(weights @ (theta[:, i] - weights @ theta[:, i]) ** 2)
         assert abs(weighted.draws(label).mean() - mean) < 0.02 * sd
     size = 1.0 / np.sum(weights**2)

@@ -85,9 +85,9 @@ def test_summary_is_quantiles_of_the_draws(fit: Fit) -> None:
         assert row["ess_bulk"] >= 1000 and row["r_hat"] <= 1.01
     priors = {p.label: p.prior for p in load_problem("forearm-glass").free}
     for label, row in summary.iterrows():
-        # 4000 prior draws: the share below each quoted quantile, within five standard errors
-        for key, share in (("prior_q05", 0.05), ("prior_median", 0.5), ("prior_q95", 0.95)):
-            assert abs(priors[label].cdf(row[key]) - share) < 5 * np.sqrt(share * (1 - share) / 4000)
+        # 4000 prior draws: the fraction below each quoted quantile, within five standard errors
+        for key, fraction in (("prior_q05", 0.05), ("prior_median", 0.5), ("prior_q95", 0.95)):
+            assert abs(priors[label].cdf(row[key]) - fraction) < 5 * np.sqrt(fraction * (1 - fraction) / 4000)
     assert len(fit.summary(derived=True)) > len(summary)
 
 

@@ -52,12 +52,12 @@ def test_the_same_posterior_from_weights(problem: sb.Problem, theta: np.ndarray,
     fit = sb.Fit.from_draws(problem, prior, problem.log_likelihood(prior))
     exact = theta.reshape(-1, 2)
     for i, name in enumerate(problem.names):
-        # share of the exact draws below, about 1000 of each kind: five standard errors
-        for share, value in zip((0.05, 0.5, 0.95), fit.quantiles(name), strict=True):
+        # fraction of the exact draws below, about 1000 of each kind: five standard errors
+        for fraction, value in zip((0.05, 0.5, 0.95), fit.quantiles(name), strict=True):
             error = np.sqrt(
-                share * (1 - share) * (1 / len(exact) + 1 / fit.provenance["sampling"]["ess_bulk"][0])
+                fraction * (1 - fraction) * (1 / len(exact) + 1 / fit.provenance["sampling"]["ess_bulk"][0])
             )
-            assert abs((exact[:, i] < value).mean() - share) < 5 * error
+            assert abs((exact[:, i] < value).mean() - fraction) < 5 * error
     assert write_report(fit, tmp_path / "page.html").stat().st_size > 10_000
     assert sb.load_fit(fit.save(tmp_path / "run.nc")).summary().equals(fit.summary())
 

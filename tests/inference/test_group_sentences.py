@@ -52,8 +52,8 @@ def test_shares_of_variance_and_ratios_follow_from_the_scales() -> None:
     assert liquids.over_noise is not None and people.over_noise is not None
     assert liquids.over_noise[1] == pytest.approx(0.4 / noise, rel=0.05)
     whole = 0.1**2 + 0.4**2 + noise**2
-    assert liquids.variance_share == pytest.approx(0.4**2 / whole, abs=0.03)
-    assert people.variance_share == pytest.approx(0.1**2 / whole, abs=0.01)
+    assert liquids.variance_fraction == pytest.approx(0.4**2 / whole, abs=0.03)
+    assert people.variance_fraction == pytest.approx(0.1**2 / whole, abs=0.01)
     middle = [found[1] for found in liquids.effects.values()]
     np.testing.assert_allclose(middle, centres, atol=0.02)
     rows = [row for row in effect_rows(fit) if row[0] == "liquid"]
@@ -88,8 +88,8 @@ def test_rows_at_the_edge_are_counted_and_named() -> None:
     assert first.startswith(
         "The contact is wider than half the radius of the ball: 22 of 165 rows, 11 of them in more than half"
     )
-    share = (11 * 1.0 + 11 * 0.3) / 165
-    assert f"{100 * share:.2g} % of the posterior predictions" in first
+    fraction = (11 * 1.0 + 11 * 0.3) / 165
+    assert f"{100 * fraction:.2g} % of the posterior predictions" in first
     assert first.endswith("All rows of honey and honey + 3 g starch.")
     assert "at its edge" in rest
 
@@ -126,8 +126,8 @@ def test_nothing_to_say_is_said_too() -> None:
 def test_machines_get_the_same() -> None:
     fit = with_flags(known_effects()[0], wide=np.where(liquids() == "honey", 0.5, 0.0))
     found = digest(fit)
-    assert found["validity"]["wide"]["rows"] == 11 == len(found["validity"]["wide"]["share_by_row"])
-    assert found["validity"]["wide"]["share"] == pytest.approx(0.5 * 11 / 165)
+    assert found["validity"]["wide"]["rows"] == 11 == len(found["validity"]["wide"]["fraction_by_row"])
+    assert found["validity"]["wide"]["fraction"] == pytest.approx(0.5 * 11 / 165)
     assert found["validity"]["wide"]["meaning"] == MEANING
     assert set(found["groups"]) == {"person", "liquid"}
     scale = found["groups"]["liquid"]["scale"]

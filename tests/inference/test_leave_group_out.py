@@ -16,7 +16,7 @@ from scipy.special import logsumexp
 
 from skinbayes.comparison import compare
 from skinbayes.comparison.scores import LeftOut, LeftOutLevel, score
-from skinbayes.comparison.words import sign_of, unreliable_levels
+from skinbayes.comparison.verdicts import sign_of, unreliable_levels
 from skinbayes.errors import InputError
 from skinbayes.fit import Fit, sample
 from skinbayes.fit.arviz_adapter import loo

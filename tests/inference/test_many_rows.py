@@ -16,8 +16,8 @@ from skinbayes.errors import InputError
 from skinbayes.fit import sample, tree
 from skinbayes.fit.arviz_adapter import loo
 from skinbayes.fit.tree import posterior_groups, prior_groups
-from skinbayes.forward import alike_rows
-from skinbayes.forward.alike_rows import on_distinct, once_for_alike
+from skinbayes.forward import deduplicated_rows
+from skinbayes.forward.deduplicated_rows import on_distinct, once_for_distinct
 from skinbayes.problem import Problem, load_problem
 from skinbayes.problem.pieces import PIECE, in_pieces, named_in_pieces
 from skinbayes.problem.rows import MOST_ROWS, MOST_ROWS_OF_EXPENSIVE_MODELS
@@ -109,7 +109,7 @@ def test_equal_rows_are_predicted_once(tmp_path: Path) -> None:
 
 
 def test_columns_that_agree_in_the_first_vector_alone_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(alike_rows, "FEW", 0)  # so few are not told apart otherwise
+    monkeypatch.setattr(deduplicated_rows, "FEW", 0)  # so few are not told apart otherwise
     inputs = {"a": np.array([[1.0, 1.0, 1.0, 2.0], [3.0, 4.0, 3.0, 5.0]]), "b": np.array([[7.0]])}
     shapes: list[tuple[int, ...]] = []
 
@@ -119,7 +119,7 @@ def test_columns_that_agree_in_the_first_vector_alone_are_told_apart(monkeypatch
 
     assert_array_equal(on_distinct(inputs, double), 14 * inputs["a"])
     assert shapes == [(2, 3)]
-    alike = once_for_alike(inputs, lambda common: {"c": 2 * common["a"] * common["b"]})
+    alike = once_for_distinct(inputs, lambda common: {"c": 2 * common["a"] * common["b"]})
     assert_array_equal(alike["c"], 14 * inputs["a"])
 
 

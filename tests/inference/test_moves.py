@@ -62,7 +62,7 @@ def test_default_moves_sample_known_targets(target, ess):
     ids=["gaussian-2", "gaussian-5", "gaussian-10", "banana"],
 )
 def test_moves_for_few_walkers_sample_known_targets(target, ess):
-    chains = run_ensembles(target, SamplerOptions(seed=11, ess=ess, costly=True))
+    chains = run_ensembles(target, SamplerOptions(seed=11, ess=ess, expensive=True))
     assert chains.converged and chains.positions.shape[2] == 64
     assert largest_error(chains, target) < LIMIT
 

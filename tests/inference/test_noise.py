@@ -72,11 +72,13 @@ def test_density_agrees_with_scipy(name):
 @pytest.mark.parametrize("prediction", [0.4, 3.0])
 def test_density_integrates_to_one(name, prediction):
     family = noise_family(name)
-    share = 0.2  # known spread of the datum: held as a share in the logarithmic families, whatever y is drawn
+    fraction = (
+        0.2  # known spread of the datum: held as a fraction in the logarithmic families, whatever y is drawn
+    )
 
     def density(t):
         y = np.exp(t) if family.logarithmic else t
-        spread = share * y if family.logarithmic else share
+        spread = fraction * y if family.logarithmic else fraction
         value = np.exp(
             float(family.log_density([y], [[prediction]], 0.3, [spread], 0.15, **shape(family, 5.0))[0, 0])
         )

@@ -13,7 +13,7 @@ from made_up_fit import made_up_fit
 from skinbayes.diagnose import identify
 from skinbayes.diagnose.rule import verdict
 from skinbayes.fit import Fit
-from skinbayes.plot.numbers import interval, percent, share
+from skinbayes.plot.numbers import fraction, interval, percent
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import digest, opening, quality, remarks, sentences
 from skinbayes.report.tables import derived_rows
@@ -76,9 +76,13 @@ def test_many_rows_are_not_far_out_by_chance() -> None:
 def test_few_draws_do_not_make_rows_far_out() -> None:
     """Of 165 data about one lies beyond all of 256 draws on either side, without being far out."""
     rng = np.random.default_rng(8)
-    found = [examine(rng.normal(size=165), rng.normal(size=(256, 165)), alike=True).far for _ in range(40)]
+    found = [
+        examine(rng.normal(size=165), rng.normal(size=(256, 165)), of_one_kind=True).far for _ in range(40)
+    ]
     assert sum(map(bool, found)) <= 8  # as above
-    assert examine(np.r_[rng.normal(size=164), 6.0], rng.normal(size=(256, 165)), alike=True).far == (164,)
+    assert examine(np.r_[rng.normal(size=164), 6.0], rng.normal(size=(256, 165)), of_one_kind=True).far == (
+        164,
+    )
 
 
 def test_a_fitted_scatter_is_no_praise() -> None:
@@ -144,7 +148,7 @@ def test_exponents_that_vary_are_not_written_as_ranges() -> None:
      (1, 4000, "0.025 %"), (0, 10000, "less than 0.01 %"), (0, 7, "less than 20 %"), (9, 10, "90 %")],
 )  # fmt: skip
 def test_none_of_some_draws_is_less_than_one_of_them(count: int, total: int, text: str) -> None:
-    assert share(count, total) == text
+    assert fraction(count, total) == text
 
 
 def test_a_prior_that_never_reaches_the_posterior_is_said_with_its_draws() -> None:
@@ -168,11 +172,11 @@ def test_a_quantity_of_each_row_has_one_sentence() -> None:
 
 
 def test_rows_of_one_median_keep_their_interval() -> None:
-    """A plastic share whose median is 1 in all rows but whose interval begins at 0.04 is not just 1."""
+    """A plastic fraction whose median is 1 in all rows but whose interval begins at 0.04 is not just 1."""
     draws = np.ones((4, 300, 12))
     draws[:, :60] = np.linspace(0.02, 0.06, 60)[:, np.newaxis]
-    fit = with_posterior(fit_of(), plastic_share=by_row("plastic_share", draws))
-    (row,) = [row for row in derived_rows(fit)[0] if row.name.startswith("plastic share")]
+    fit = with_posterior(fit_of(), plastic_fraction=by_row("plastic_fraction", draws))
+    (row,) = [row for row in derived_rows(fit)[0] if row.name.startswith("plastic fraction")]
     low, high = np.quantile(draws, [0.05, 0.95])
     assert row.median == "1 in all rows"
     assert row.interval == interval(low, high, "1") and low < 0.1 < high

@@ -65,25 +65,25 @@ def quadrature(
     }
 
 
-def quantiles(grid: np.ndarray, density: np.ndarray, shares: tuple[float, ...]) -> np.ndarray:
+def quantiles(grid: np.ndarray, density: np.ndarray, fractions: tuple[float, ...]) -> np.ndarray:
     """ln of quantiles by the trapezoidal rule in ln θ; and the density there per ln θ."""
     x = np.log(grid)
     mass = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2 * np.diff(x))])
-    at = np.interp(shares, mass / mass[-1], x)
+    at = np.interp(fractions, mass / mass[-1], x)
     return np.stack([at, np.interp(at, x, density / mass[-1])])
 
 
 def compare(fit: Fit, marginals: dict[str, tuple[np.ndarray, np.ndarray]]) -> None:
-    shares = (0.05, 0.5, 0.95)
+    fractions = (0.05, 0.5, 0.95)
     summary = fit.summary()
     for name, (grid, density) in marginals.items():
-        expected, height = quantiles(grid, density, shares)
+        expected, height = quantiles(grid, density, fractions)
         draws = np.log(fit.draws(name))
         size = min(summary.loc[name, "ess_bulk"], summary.loc[name, "ess_tail"], draws.size)
-        error = np.sqrt(np.array(shares) * (1 - np.array(shares)) / size) / height
-        found = np.quantile(draws, shares)
+        error = np.sqrt(np.array(fractions) * (1 - np.array(fractions)) / size) / height
+        found = np.quantile(draws, fractions)
         assert np.all(np.abs(found - expected) < WITHIN * error), (
-            f"{name}: {np.round((found - expected) / error, 2)} standard errors at {shares}"
+            f"{name}: {np.round((found - expected) / error, 2)} standard errors at {fractions}"
         )
         # the whole distribution, not three quantiles of it alone
         x = np.log(grid)

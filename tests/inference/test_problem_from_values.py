@@ -87,7 +87,10 @@ def test_the_file_that_a_shipped_problem_writes_makes_it_again(name: str, tmp_pa
     assert (tmp_path / "mine.toml").read_text(encoding="utf-8") == text
     assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
     assert again.fingerprint == problem.fingerprint
-    assert again.spec.derived == problem.spec.derived and again.spec.yardsticks == problem.spec.yardsticks
+    assert (
+        again.spec.derived == problem.spec.derived
+        and again.spec.baseline_models == problem.spec.baseline_models
+    )
     assert again.spec.description == problem.spec.description
     assert [p.source for p in again.free] == [p.source for p in problem.free]
 

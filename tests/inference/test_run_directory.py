@@ -114,7 +114,7 @@ def test_files_are_not_written_through_links(tmp_path: Path, whole: Fit) -> None
     assert not (folder / "result.nc").is_symlink() and not (folder / "summary.csv").is_symlink()
 
 
-@pytest.mark.parametrize("name", ["data", "steps", "yardstick-models"])
+@pytest.mark.parametrize("name", ["data", "steps", "baseline-models"])
 def test_linked_folders_are_refused(name: str, tmp_path: Path) -> None:
     problem, folder, mine = small_problem(tmp_path / "model"), tmp_path / "run", tmp_path / "mine"
     with RunDirectory(folder, problem, resume=False):

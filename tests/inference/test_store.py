@@ -11,7 +11,7 @@ import pytest
 from sampling_targets import UnitGaussian
 
 from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning
-from skinbayes.sampling.advance import Block
+from skinbayes.sampling.advance import EnsembleSteps
 from skinbayes.sampling.ensembles import draw_identity, run_ensembles
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.segments import segment_image
@@ -26,7 +26,7 @@ def block(seed):
     generator = np.random.RandomState(seed)
     positions = generator.normal(size=(5, 8, 2))  # an odd number of draws leaves a cached one
     generator.normal()
-    return Block(
+    return EnsembleSteps(
         positions,
         generator.normal(size=(5, 8)),
         generator.get_state(),

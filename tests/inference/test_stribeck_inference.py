@@ -213,7 +213,7 @@ def test_a_prediction_for_other_rows_needs_their_liquid(problem: Problem, tmp_pa
 def test_finger_models_share_everything_but_their_hypothesis(name: str) -> None:
     plain, problem = load_problem("finger-stribeck"), load_problem(name)
     assert problem.conditions.n_rows == 165 and problem.groups.columns == ("person", "liquid")
-    assert problem.spec.yardsticks == ("finger-null", "finger-descriptive")
+    assert problem.spec.baseline_models == ("finger-null", "finger-descriptive")
     assert len(set(problem.tables.flow_curves)) == 15
     shared = {p.label: p.prior_text for p in plain.free} | {"rms_height": None}
     for parameter in problem.free:

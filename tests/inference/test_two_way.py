@@ -34,7 +34,7 @@ def test_balanced_tables_have_closed_formulas(shape):
     assert found.sequential_sum_of_squares == pytest.approx(expected, rel=1e-11)
     assert found.marginal_sum_of_squares == pytest.approx(expected, rel=1e-11)
     assert found.total_sum_of_squares == pytest.approx(table.var() * a * b, rel=1e-12)
-    assert sum(found.sequential_share.values()) + found.residual_share == pytest.approx(1.0, rel=1e-12)
+    assert sum(found.sequential_fraction.values()) + found.residual_fraction == pytest.approx(1.0, rel=1e-12)
     fitted = (rows[:, None] + columns - table.mean()).ravel()
     np.testing.assert_allclose(found.fitted, fitted, rtol=1e-12, atol=1e-12)
 
@@ -88,7 +88,7 @@ def test_a_nested_column_explains_nothing_beyond_the_finer_one():
         np.random.default_rng(1).normal(size=12), {"patient": patient, "ward": ward}
     )
     assert found.column_degrees_of_freedom == {"patient": 3, "ward": 0}
-    assert found.sequential_share["ward"] == pytest.approx(0.0, abs=1e-14)
+    assert found.sequential_fraction["ward"] == pytest.approx(0.0, abs=1e-14)
     assert found.degrees_of_freedom == 8
 
 
@@ -115,7 +115,7 @@ def test_units_and_offsets_scale():
     assert scaled.residual_standard_deviation == pytest.approx(
         1e-6 * plain.residual_standard_deviation, rel=1e-6
     )
-    assert scaled.marginal_share == pytest.approx(plain.marginal_share, rel=1e-6)
+    assert scaled.marginal_fraction == pytest.approx(plain.marginal_fraction, rel=1e-6)
 
 
 @pytest.mark.parametrize("values", [[1.0, 2.0], [1.0, 2.0, np.nan, 4.0], [[1.0, 2.0, 3.0, 4.0]]])
@@ -127,4 +127,4 @@ def test_values_that_do_not_fit(values):
 def test_equal_values_have_no_shares():
     found = crossed_analysis_of_variance(np.full(4, 3.0), balanced_labels(2, 2))
     assert found.residual_standard_deviation == 0.0
-    assert np.isnan([*found.sequential_share.values(), found.residual_share]).all()
+    assert np.isnan([*found.sequential_fraction.values(), found.residual_fraction]).all()

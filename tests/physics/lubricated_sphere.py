@@ -78,7 +78,7 @@ class SphereFilms(NamedTuple):
     separation: np.ndarray
     fluid_pressure: np.ndarray
     asperity_pressure: np.ndarray
-    asperity_load_share: np.ndarray
+    asperity_load_fraction: np.ndarray
     couette: np.ndarray
     pressure_flow: np.ndarray
     minimum_film: np.ndarray
@@ -130,15 +130,15 @@ def sector_kernel(radius: np.ndarray, faces: np.ndarray, rays: int) -> np.ndarra
     r, edge = radius[:, None, None], faces[None, :, None]
     result = np.empty((radius.size, radius.size, rays + 1))
     for away in range(rays + 1):
-        angles, shares = (away + nodes / 2) * step, weights * step / 2
+        angles, fractions = (away + nodes / 2) * step, weights * step / 2
         if away == 0:  # both halves alike
-            angles, shares = step / 2 * close**4, close_weights * step * 2 * close**3
+            angles, fractions = step / 2 * close**4, close_weights * step * 2 * close**3
         along, across = edge - r * np.cos(angles), r * np.sin(angles)
         distance = np.hypot(along, across)
         # before the place the sum cancels, where it is (r sinφ)² over the difference
         before = along < 0
         term = np.where(before, np.square(across) / np.where(before, distance - along, 1.0), along + distance)
-        result[:, :, away] = np.diff(distance + r * np.cos(angles) * np.log(term), axis=1) @ shares
+        result[:, :, away] = np.diff(distance + r * np.cos(angles) * np.log(term), axis=1) @ fractions
     return 2 / np.pi**2 * result
 
 
@@ -190,9 +190,9 @@ class SphereSolver:
             if info != 0 or not np.isfinite(change).all():
                 return None
             relative = (change[-1] + grid.kernel @ change[:-1]) / np.maximum(film, TINY)
-            share = 1.0 if film.min() <= 0 else min(1.0, -0.75 / min(relative.min(), -TINY))
-            pressure, approach = pressure + share * change[:-1], float(approach + share * change[-1])
-            if share == 1 and np.abs(relative).max() < TOLERANCE and np.array_equal(full, full_before):
+            fraction = 1.0 if film.min() <= 0 else min(1.0, -0.75 / min(relative.min(), -TINY))
+            pressure, approach = pressure + fraction * change[:-1], float(approach + fraction * change[-1])
+            if fraction == 1 and np.abs(relative).max() < TOLERANCE and np.array_equal(full, full_before):
                 return Film(pressure, approach, step, off)
             full_before = full
         return None
@@ -266,16 +266,18 @@ def _extrapolated(trail: list[tuple[float, Film]], target: float) -> Film:
     """Polynomial through the last films against ln λ."""
     places = np.array([place for place, _ in trail])
     others = [np.delete(places, k) for k in range(places.size)]
-    shares = [np.prod((target - rest) / (place - rest)) for place, rest in zip(places, others, strict=True)]
-    pressure = sum(share * film.pressure for share, (_, film) in zip(shares, trail, strict=True))
-    approach = sum(share * film.approach for share, (_, film) in zip(shares, trail, strict=True))
+    fractions = [
+        np.prod((target - rest) / (place - rest)) for place, rest in zip(places, others, strict=True)
+    ]
+    pressure = sum(fraction * film.pressure for fraction, (_, film) in zip(fractions, trail, strict=True))
+    approach = sum(fraction * film.approach for fraction, (_, film) in zip(fractions, trail, strict=True))
     return Film(np.asarray(pressure), float(approach))
 
 
 def drag_integrals(solver: SphereSolver, state: Film, number: float, cut: float) -> tuple[float, float]:
     """∫θ/H dA and ∫H ∂P_f/∂x dA within r < ``cut``; without end both would grow as the logarithm of the radius.
 
-    In the cavity the liquid that passed the break at the same y fills the share θ = H_c/H of the width.
+    In the cavity the liquid that passed the break at the same y fills the fraction θ = H_c/H of the width.
     """
     grid, film, fluid = solver.grid, solver.separation(state), solver.fluid(state)
     wet = fluid > DRY
@@ -297,8 +299,8 @@ def drag_integrals(solver: SphereSolver, state: Film, number: float, cut: float)
     push = number * grid.width_along / grid.width * grid.distance * 2 / both
     climb = 2 * low * high / both * (fluid[grid.right] - fluid[grid.left])
     climb += np.where(wet[grid.left] | wet[grid.right], push * (np.arctanh(uneven) / uneven - 1), 0.0)
-    share = (inside[grid.left] + inside[grid.right]) / 2
-    return float(couette), float(2 * (climb * grid.width_along * share).sum())
+    fraction = (inside[grid.left] + inside[grid.right]) / 2
+    return float(couette), float(2 * (climb * grid.width_along * fraction).sum())
 
 
 def lubricated_sphere(
@@ -328,7 +330,7 @@ def lubricated_sphere(
         separation=film * height,
         fluid_pressure=fluid * peak,
         asperity_pressure=carried * peak,
-        asperity_load_share=carried @ grid.area / LOAD,
+        asperity_load_fraction=carried @ grid.area / LOAD,
         couette=number * slope / (4 * np.pi) * parts[:, 0],
         pressure_flow=3 * slope / (4 * np.pi) * parts[:, 1],
         minimum_film=film.min(axis=1) * height,

@@ -39,7 +39,7 @@ def paper_at_gap(gap, load=LOAD, **options):
 
 
 @pytest.mark.parametrize(
-    ("closure", "glass", "pull", "film", "separation"),
+    ("closure", "glass", "strength", "film", "separation"),
     [
         ("gaussian", 0, 0.62, 5.8e-6, 11.05e-6),
         ("gaussian", 20, 0.585, 5.8e-6, 11.16e-6),
@@ -47,12 +47,12 @@ def paper_at_gap(gap, load=LOAD, **options):
         ("sharp", 20, 0.705, 9.7e-6, 10.82e-6),
     ],
 )
-def test_strongest_pull_of_the_paper(closure, glass, pull, film, separation):
+def test_strongest_pull_of_the_paper(closure, glass, strength, film, separation):
     # prototypes computed apart from this code, water at 25 °C; the maximum of the sharp closure is broad
     films = np.linspace(2e-6, 13e-6, 89)
     state = paper(films, surface_tension=0.0720, contact_angle_counterface=np.radians(glass), closure=closure)
     best = np.argmax(state.capillary_pressure)
-    assert state.capillary_pressure[best] / LOAD == pytest.approx(pull, rel=0.005)
+    assert state.capillary_pressure[best] / LOAD == pytest.approx(strength, rel=0.005)
     assert films[best] == pytest.approx(film, abs=0.4e-6 if closure == "sharp" else 0.1e-6)
     assert state.mean_separation[best] == pytest.approx(separation, rel=0.001)
 
@@ -73,7 +73,7 @@ def test_flooded_from_the_mean_separation_on():
     np.testing.assert_allclose(close.capillary_pressure[:-1] / close.capillary_pressure[1:], 10.0, rtol=0.01)
 
 
-def brute_force(film, load, surface, skin, pull, closure):
+def brute_force(film, load, surface, skin, strength, closure):
     """p and d by nested root finding, with quadratures over P(u) written out."""
 
     def density(gaps):
@@ -102,7 +102,7 @@ def brute_force(film, load, surface, skin, pull, closure):
         pressure = np.exp(log_pressure)
         gaps = gap_distribution(pressure, surface, skin=skin, closure=closure)
         gap = gap_for(gaps)
-        return pressure - load - pull / gap * integrate(gaps, gap, 0)
+        return pressure - load - strength / gap * integrate(gaps, gap, 0)
 
     pressure = np.exp(brentq(imbalance, np.log(load * (1 + 1e-6)), np.log(load * 4), xtol=1e-10))
     return pressure, gap_for(gap_distribution(pressure, surface, skin=skin, closure=closure))
@@ -119,8 +119,8 @@ def brute_force(film, load, surface, skin, pull, closure):
 )
 def test_brute_force(film, load, skin, angles, closure):
     first, second = np.radians(angles)
-    pull = TENSION * (np.cos(first) + np.cos(second))
-    pressure, gap = brute_force(film, load, SURFACE, skin, pull, closure)
+    strength = TENSION * (np.cos(first) + np.cos(second))
+    pressure, gap = brute_force(film, load, SURFACE, skin, strength, closure)
     given = {"load": load, "skin": skin, "contact_angle_skin": first, "closure": closure}
     state = paper(film, contact_angle_counterface=second, **given)
     sharp = closure == "sharp"  # which costs the quadrature some digits
@@ -134,11 +134,11 @@ def test_brute_force(film, load, skin, angles, closure):
 def test_residuals_with_the_public_gap_distribution(closure):
     films = np.geomspace(0.05e-6, 13e-6, 9)
     state = paper(films, 20.0, closure=closure)
-    pull = TENSION * (np.cos(SKIN_ANGLE) + np.cos(np.radians(20.0)))
+    strength = TENSION * (np.cos(SKIN_ANGLE) + np.cos(np.radians(20.0)))
     for i, film in enumerate(films):
         gaps = gap_distribution(state.total_pressure[i], SURFACE, skin=WET, closure=closure)
         wet = gaps.cumulative(state.kelvin_gap[i]) - gaps.contact_fraction
-        total = LOAD + pull / state.kelvin_gap[i] * wet
+        total = LOAD + strength / state.kelvin_gap[i] * wet
         assert state.total_pressure[i] == pytest.approx(total, rel=1e-10)
         assert gaps.film(state.kelvin_gap[i]) == pytest.approx(film, rel=1e-10)
         assert state.wet_area[i] == pytest.approx(wet, rel=1e-10)
@@ -361,10 +361,10 @@ def test_shapes_and_impossible_arguments():
 def test_films_at_the_nodes_of_the_interpolation_are_found():
     # there the root lies on the edge of its bracket, where rounding decides on which side
     source = GapSource(SURFACE, WET, np.float64(0.42), "gaussian")
-    load, pull = np.array([LOAD]), np.array([TENSION * (np.cos(SKIN_ANGLE) + 1)])
+    load, strength = np.array([LOAD]), np.array([TENSION * (np.cos(SKIN_ANGLE) + 1)])
     separation = mean_separation(load, SURFACE, skin=WET)
     with np.errstate(all="ignore"):
-        curve = solve_curve(source, load, pull, separation, np.array([0.1e-6]))
+        curve = solve_curve(source, load, strength, separation, np.array([0.1e-6]))
     z, _ = curve.at(np.exp(curve.nodes[:, 1:-1]))
     places = np.sin(np.pi / 2 * np.arange(curve.nodes.shape[1]) / (curve.nodes.shape[1] - 1)) ** 2
     np.testing.assert_allclose(z, curve.end[:, None] * places[1:-1], atol=1e-9)

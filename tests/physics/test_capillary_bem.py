@@ -1,8 +1,8 @@
 """The mean-field step of capillary bridges against boundary elements with Laplace tractions where the water is.
 
-In the theory the pull of the bridges presses evenly on the whole contact. Here it pulls at the wet places alone: the solid is
-pressed by contact where the gap is 0 and sucked with the Laplace pressure wherever the gap is less than d_K. Both are solved on
-the same surface by the same solver, so that nothing but that step differs.
+In the theory the capillary pressure of the bridges presses evenly on the whole contact. Here it pulls at the wet places alone:
+the solid is pressed by contact where the gap is 0 and sucked with the Laplace pressure wherever the gap is less than d_K. Both
+are solved on the same surface by the same solver, so that nothing but that step differs.
 """
 
 import numpy as np
@@ -43,15 +43,15 @@ def sucked(heights, length, rounds=40):
 
 
 def pressed_evenly(heights, length, rounds=40):
-    """The same with the pull spread evenly."""
-    pull = 0.0
+    """The same with the capillary pressure spread evenly."""
+    wetting_tension = 0.0
     for _ in range(rounds):
-        contact, gap = press(heights, length, WET, LOAD + pull, tolerance=1e-5)
+        contact, gap = press(heights, length, WET, LOAD + wetting_tension, tolerance=1e-5)
         following = LAPLACE * np.mean(wet_places(contact, gap))
-        if abs(following - pull) < 1e-3 * LOAD:
+        if abs(following - wetting_tension) < 1e-3 * LOAD:
             return contact, gap, np.mean(wet_places(contact, gap))
-        pull = (pull + following) / 2
-    raise AssertionError("the pull did not settle")
+        wetting_tension = (wetting_tension + following) / 2
+    raise AssertionError("the capillary pressure did not settle")
 
 
 @pytest.mark.parametrize("seed", [0])

@@ -170,7 +170,7 @@ def test_dry_skin_of_the_paper():
     assert persson_contact_area(PRESSURE, twice_variance) == pytest.approx(2.94031e-6, rel=3e-6)
     area = elastoplastic_contact_area(PRESSURE, twice_variance, yield_stress=50e6)
     assert area.total == pytest.approx(PRESSURE / 50e6, rel=1e-12)  # 1.366e-4
-    assert area.plastic_share == pytest.approx(1.0, rel=1e-12)
+    assert area.plastic_fraction == pytest.approx(1.0, rel=1e-12)
     assert friction_coefficient(15e6, area.total, nominal_pressure=PRESSURE) == pytest.approx(0.3, rel=1e-12)
 
 
@@ -180,10 +180,10 @@ def test_dry_skin_of_the_paper():
     ids=["plain", "corrected"],
 )
 def test_onset_of_yielding_in_dry_skin(gamma, wavevectors):
-    share = elastoplastic_contact_area(
+    fraction = elastoplastic_contact_area(
         PRESSURE,
         twice_stress_variance(SURFACE, DRY, wavevector=wavevectors),
         yield_stress=50e6,
         area_correction=gamma,
-    ).plastic_share
-    np.testing.assert_allclose(share, [0.1, 0.5, 0.99], atol=1e-3)
+    ).plastic_fraction
+    np.testing.assert_allclose(fraction, [0.1, 0.5, 0.99], atol=1e-3)

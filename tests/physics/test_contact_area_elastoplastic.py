@@ -160,7 +160,7 @@ def test_plastic_limit_carries_the_load_at_the_yield_stress():
     area = elastoplastic_contact_area([1.0, 500.0, 6830.0], 1e22, yield_stress=5e7)
     np.testing.assert_allclose(area.plastic, np.array([1.0, 500.0, 6830.0]) / 5e7, rtol=1e-13)
     assert np.all(area.elastic < 1e-100)
-    np.testing.assert_allclose(area.plastic_share, 1.0, rtol=1e-15)
+    np.testing.assert_allclose(area.plastic_fraction, 1.0, rtol=1e-15)
 
 
 def test_smooth_surface_touches_everywhere_and_does_not_yield():
@@ -177,7 +177,7 @@ def test_pressure_at_and_above_the_yield_stress_is_full_plastic_contact():
 
 def test_no_load_no_contact():
     area = elastoplastic_contact_area(0.0, 1.0, yield_stress=[0.5, 5.0, np.inf])
-    assert np.all(area.total == 0) and np.all(np.isnan(area.plastic_share))
+    assert np.all(area.total == 0) and np.all(np.isnan(area.plastic_fraction))
     np.testing.assert_allclose(area.non_contact, 1.0, rtol=1e-14)
 
 
@@ -224,7 +224,7 @@ def test_batch_and_rows_agree_to_the_last_bit():
 
 @pytest.mark.parametrize("upper", [5e4, 9e4, 1.05e5, 2e5])
 @pytest.mark.parametrize("gamma", [1.0, 0.42])
-def test_dry_skin_from_the_spectrum_to_the_plastic_share(upper, gamma):
+def test_dry_skin_from_the_spectrum_to_the_plastic_fraction(upper, gamma):
     """The whole chain written again: quad, an ODE for the correction, image sources as they stand."""
     surface, pressure, limit = named_surface("paper_reference"), 6830.0, 50e6
     skin = LayeredSkin(young_modulus_layer=1e9, young_modulus_bulk=20e3, layer_thickness=20e-6)
@@ -257,4 +257,4 @@ def test_dry_skin_from_the_spectrum_to_the_plastic_share(upper, gamma):
         elastic, rel=1e-6, abs=1e-8 if s > 1 else 0
     )  # images cancel when s > 1
     assert area.plastic == pytest.approx(plastic, rel=1e-4)
-    assert area.plastic_share == pytest.approx(plastic / (elastic + plastic), rel=1e-4)
+    assert area.plastic_fraction == pytest.approx(plastic / (elastic + plastic), rel=1e-4)

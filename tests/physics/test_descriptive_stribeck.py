@@ -1,4 +1,4 @@
-"""Yardsticks without theory: limits and shape of the descriptive Stribeck curve, the constant, and their model files."""
+"""Baseline models without theory: limits and shape of the descriptive Stribeck curve, the constant, and their model files."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_its_profile_is_the_curve() -> None:
 
 
 @pytest.mark.parametrize("name", ["finger-null", "finger-descriptive"])
-def test_the_shipped_yardsticks_explain_all_rows_with_the_same_scatter(name: str) -> None:
+def test_the_shipped_baseline_models_explain_all_rows_with_the_same_scatter(name: str) -> None:
     problem = sb.load_problem(name)
     assert problem.conditions.n_rows == 165
     priors = {p.label: p.prior_text for p in problem.free}
@@ -95,26 +95,26 @@ def test_the_null_model_is_one_number() -> None:
     assert set(problem.predict(theta)["friction_coefficient"].tolist()) == {0.4}
 
 
-YARDSTICKS = [
+BASELINES = [
     ('["finger-nul"]', "finger-null"),
     ('["finger-null", "finger-null"]', "each once"),
     ('["mine.toml"]', "other models than 'mine'"),
-    ("3", "yardsticks"),
+    ("3", "baseline_models"),
 ]
 
 
-@pytest.mark.parametrize(("value", "said"), YARDSTICKS)
-def test_yardsticks_that_cannot_be(value: str, said: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("value", "said"), BASELINES)
+def test_baseline_models_that_cannot_be(value: str, said: str, tmp_path: Path) -> None:
     text = (Path(__file__).resolve().parents[2] / "models" / "finger-null.toml").read_text(encoding="utf-8")
     path = tmp_path / "mine.toml"
-    path.write_text(f"yardsticks = {value}\n{text}", encoding="utf-8")
+    path.write_text(f"baseline_models = {value}\n{text}", encoding="utf-8")
     with pytest.raises(sb.InputError, match=said):
         sb.load_problem(path)
 
 
-def test_yardsticks_are_named_in_the_model_file(tmp_path: Path) -> None:
+def test_baseline_models_are_named_in_the_model_file(tmp_path: Path) -> None:
     text = (Path(__file__).resolve().parents[2] / "models" / "finger-null.toml").read_text(encoding="utf-8")
     path = tmp_path / "mine.toml"
-    path.write_text(f'yardsticks = ["finger-descriptive", "own/null.toml"]\n{text}', encoding="utf-8")
+    path.write_text(f'baseline_models = ["finger-descriptive", "own/null.toml"]\n{text}', encoding="utf-8")
     expected = ("finger-descriptive", str((tmp_path / "own" / "null.toml").resolve()))
-    assert sb.load_problem(path).spec.yardsticks == expected
+    assert sb.load_problem(path).spec.baseline_models == expected

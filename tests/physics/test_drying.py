@@ -87,10 +87,10 @@ def test_regimes_follow_the_physics_behind_them():
     np.testing.assert_allclose(local, state.relative_contact_area, rtol=1e-3)
     run = curve(np.linspace(0, 600, 1201))
     np.testing.assert_allclose(run.friction_coefficient, SHEAR / LOAD * run.relative_contact_area, rtol=1e-14)
-    shares = run.flooded_share + run.dry_share
-    assert np.all((shares >= 0) & (shares <= 1 + 1e-12))
-    assert run.flooded_share[100] == 1
-    assert run.dry_share[0] == run.dry_share[-1] == 1
+    fractions = run.flooded_fraction + run.dry_fraction
+    assert np.all((fractions >= 0) & (fractions <= 1 + 1e-12))
+    assert run.flooded_fraction[100] == 1
+    assert run.dry_fraction[0] == run.dry_fraction[-1] == 1
     # water leaves at the rate of evaporation while the track is wet
     wet = (run.film_thickness > 1e-6)[1:] & (np.arange(1200) > 70)
     np.testing.assert_allclose(np.diff(run.film_thickness)[wet], -RATE * 0.5, rtol=1e-6)
@@ -230,12 +230,14 @@ def test_hardening_layer():
     place = np.argmin(np.abs(hard.film - 2e-6))
     film = hard.film[place]
 
-    def wet_share(thickness):
+    def wet_fraction(thickness):
         return (thickness / 1e-6) ** 2 / (1 + (thickness / 1e-6) ** 2)
 
-    share = wet_share(film) / wet_share(hard.film[-1])
+    fraction = wet_fraction(film) / wet_fraction(hard.film[-1])
     skin = LayeredSkin(
-        young_modulus_layer=7e6**share * 1e9 ** (1 - share), young_modulus_bulk=20e3, layer_thickness=20e-6
+        young_modulus_layer=7e6**fraction * 1e9 ** (1 - fraction),
+        young_modulus_bulk=20e3,
+        layer_thickness=20e-6,
     )
     state = capillary_state(film, LOAD, **WATER, spectrum=SURFACE, skin=skin, contact_angle_counterface=0.0)
     area = elastoplastic_contact_area(

@@ -117,8 +117,8 @@ def check_all_edges(surface_kind, skin_kind, count):
         assert all(np.isfinite(getattr(gaps, field.name)).all() for field in fields(gaps))
         np.testing.assert_allclose(gaps.film(np.inf)[unclosed], mean[unclosed], rtol=1e-6)
         np.testing.assert_allclose(gaps.cumulative(np.inf), 1.0, rtol=1e-9)
-        share = gaps.cumulative(mean[..., None])
-        assert ((share >= gaps.contact_fraction[..., None] - 1e-12) & (share <= 1 + 1e-12)).all()
+        fraction = gaps.cumulative(mean[..., None])
+        assert ((fraction >= gaps.contact_fraction[..., None] - 1e-12) & (fraction <= 1 + 1e-12)).all()
     inner_gaps = gap_distribution(pressure[:, None], inner_surface, skin=inner_skin)
     gaps = gap_distribution(pressure[:, None], surface, skin=skin)
     # 2e-3 is the accuracy of the cells, see `gap_distribution`

@@ -91,16 +91,16 @@ def test_flow_factors_at_their_ends():
 
 
 def test_factors_of_gaps_at_their_ends():
-    # one gap everywhere is no roughness; gaps without a share do not count
-    for gap, share in (([1e-6], [1.0]), ([1e-9, 1e-6], [0.0, 1.0])):
-        np.testing.assert_allclose(gap_flow_factors(gap, share), [1.0, 0.0, 1.0, 1.0], atol=1e-12)
+    # one gap everywhere is no roughness; gaps without a fraction do not count
+    for gap, fraction in (([1e-6], [1.0]), ([1e-9, 1e-6], [0.0, 1.0])):
+        np.testing.assert_allclose(gap_flow_factors(gap, fraction), [1.0, 0.0, 1.0, 1.0], atol=1e-12)
     closed = gap_flow_factors([1e-6, 2e-6], [0.25, 0.25])
     assert closed.pressure_flow == closed.pressure_stress == 0.0 and closed.shear_flow == 0.75e-6
     np.testing.assert_allclose(
         gap_flow_factors([1e-6, 2e-6], [0.25, 0.25 + 1e-9]), closed, rtol=1e-6, atol=1e-8
     )
     assert gap_flow_factors([1e-6], [0.0]) == gap_flow_factors([], []) == (0.0, 0.0, 0.0, 0.0)
-    for gap, share in (
+    for gap, fraction in (
         ([0.0, 1e-6], [0.5, 0.5]),
         ([-1e-6, 1e-6], [0.5, 0.5]),
         ([1e-6, 2e-6], [-0.1, 1.0]),
@@ -109,7 +109,7 @@ def test_factors_of_gaps_at_their_ends():
         ([1e-6, 2e-6], [np.nan, 0.5]),
         ([np.inf, 2e-6], [0.5, 0.5]),
     ):
-        assert np.isnan(gap_flow_factors(gap, share)).all()
+        assert np.isnan(gap_flow_factors(gap, fraction)).all()
 
 
 def test_rheology_at_its_ends():
@@ -119,8 +119,8 @@ def test_rheology_at_its_ends():
     np.testing.assert_allclose(thinned_viscosity([1e300, np.inf], 1e10), 1e4 * 1e10**-0.8, rtol=1e-12)
     assert np.isnan(thinned_viscosity([0.0, -1.0, 1.0, 1.0], [1.0, 1.0, -1.0, np.nan])).all()
     assert np.isnan(thinned_viscosity(1.0, 1.0, scale=[0.0, 1.0], exponent=[1.0, -1.0])).all()
-    share, power = ShearThinning(1.0).relative(np.array([0.0, 1e300, np.inf]))
-    np.testing.assert_allclose(share, [1.0, 1e4 * 1e300**-0.8, 0.0], rtol=1e-12)
+    fraction, power = ShearThinning(1.0).relative(np.array([0.0, 1e300, np.inf]))
+    np.testing.assert_allclose(fraction, [1.0, 1e4 * 1e300**-0.8, 0.0], rtol=1e-12)
     np.testing.assert_allclose(power, [0.0, -0.8, -0.8], atol=1e-12)
     np.testing.assert_array_equal(
         ShearThinning(1.0, scale=np.inf).relative(np.array([0.0, 1e9])), [[1, 1], [0, 0]]

@@ -119,7 +119,7 @@ def check_rest(count):
     )
     for name in ("couette", "pressure_flow"):
         np.testing.assert_array_equal(getattr(found, name)[:, 0], 0.0)
-    np.testing.assert_array_equal(found.asperity_load_share[:, 0], 1.0)
+    np.testing.assert_array_equal(found.asperity_load_fraction[:, 0], 1.0)
     one = stribeck_curve(
         [0.0, 1e-300, 1e-15],
         sphere_radius=radius[1],
@@ -199,7 +199,7 @@ def test_films_of_impossible_arguments_are_nan_and_leave_others_alone():
         if name != "lubrication_number":
             assert np.isnan(value[[0, 2, 3, 4]]).all(), name
     resting = lubricated_films([0.0, 0.1], **LINE)
-    assert np.isnan(resting.minimum_film[0]) and np.isnan(resting.asperity_load_share[0])
+    assert np.isnan(resting.minimum_film[0]) and np.isnan(resting.asperity_load_fraction[0])
     assert resting.central_film[1] == pytest.approx(lubricated_films([0.1], **LINE).central_film[0], rel=1e-9)
     for name in LINE:
         for value in (0.0, -1.0, np.inf, np.nan):
@@ -272,7 +272,7 @@ def test_a_table_of_films_at_its_ends():
     np.testing.assert_allclose(found.friction_coefficient[:2], found.friction_coefficient[2], rtol=1e-6)
     assert found.couette[0] == 0.0 and found.pressure_flow[0] == 0.0
     np.testing.assert_array_equal(found.central_film[0], found.central_film[1])
-    assert (found.asperity_load_share <= 1).all() and not found.outside_table.any()
+    assert (found.asperity_load_fraction <= 1).all() and not found.outside_table.any()
     for product in (0.0, 1e-300, 1e-12):
         alone = tabulated_friction(table, product, parameters=ball, frictional_shear_stress=STRESS)
         assert alone.friction_coefficient == found.friction_coefficient[[0.0, 1e-300, 1e-12].index(product)]

@@ -113,7 +113,7 @@ def test_saturated_air_is_the_limit_of_humid_air():
         contact_angle_counterface=second,
         count=False,
     )
-    # far from all gaps the whole area is wet: the pull is the Laplace pressure k_B T (1 − RH)/v, 135 MPa times the distance
+    # far from all gaps all is wet: the capillary pressure is the Laplace pressure k_B T (1 − RH)/v, 135 MPa times the distance
     wetting = np.cos(first) + np.cos(second) > 0
     assert 3 < wetting.sum() < 12
     dry = relative_contact_area(load, twice_stress_variance(surface, skin))

@@ -39,14 +39,14 @@ def test_time_goes_on_for_ever():
     curve = dried([-np.inf, np.inf])
     friction = friction_coefficient(STRESS, CONTACT.dry_area, nominal_pressure=LOAD)
     np.testing.assert_array_equal(curve.friction_coefficient, friction)
-    np.testing.assert_array_equal([*curve.film_thickness, *curve.flooded_share], 0.0)
-    np.testing.assert_array_equal(curve.dry_share, 1.0)
+    np.testing.assert_array_equal([*curve.film_thickness, *curve.flooded_fraction], 0.0)
+    np.testing.assert_array_equal(curve.dry_fraction, 1.0)
     # nothing evaporates, or there is no end of water: flooded as on the first day
     flooded = friction_coefficient(STRESS, CONTACT.area[-1], nominal_pressure=LOAD)
     for changes in ({"rate": 0.0}, {"film": np.inf}):
         curve = dried([0.0, 30.0, 1e9], **changes)
         np.testing.assert_array_equal(curve.friction_coefficient, [friction, flooded, flooded])
-        np.testing.assert_array_equal(curve.flooded_share, [0.0, 1.0, 1.0])
+        np.testing.assert_array_equal(curve.flooded_fraction, [0.0, 1.0, 1.0])
         assert curve.film_thickness[2] == changes.get("film", 90e-6)
     assert dried(np.inf, rate=0.0).friction_coefficient == flooded
     # never wetted

@@ -25,7 +25,7 @@ from skinbayes.roughness import named_surface
 SHEAR_STRESS = 15e6
 PRODUCTS = np.geomspace(1e-6, 0.3, 30)
 FIELDS = (
-    "friction_coefficient", "boundary", "couette", "pressure_flow", "central_film", "minimum_film", "asperity_load_share",
+    "friction_coefficient", "boundary", "couette", "pressure_flow", "central_film", "minimum_film", "asperity_load_fraction",
 )  # fmt: skip
 
 
@@ -59,8 +59,8 @@ def test_table_against_direct_solutions():
         assert np.array_equal(np.isfinite(found.friction_coefficient[place]), valid)
         for name in FIELDS:
             tabulated, solved = getattr(found, name)[place][valid], getattr(wanted, name)[valid]
-            # boundary and load share fall by many decades; elsewhere films move by more than friction does
-            level = 1e-3 if name in ("boundary", "asperity_load_share") else 0.0
+            # boundary and load fraction fall by many decades; elsewhere films move by more than friction does
+            level = 1e-3 if name in ("boundary", "asperity_load_fraction") else 0.0
             tolerance = {"friction_coefficient": 5e-3, "minimum_film": 2e-2}.get(name, 1e-2)
             assert np.all(np.abs(tabulated - solved) <= tolerance * (solved + level)), name
 

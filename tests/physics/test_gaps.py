@@ -76,9 +76,9 @@ def plainly(pressure, surface, skin, gamma, gaps, nodes=160, points=200):
     width = np.sqrt((above[1:] + above[:-1]) / 2)
     u = np.append(0, np.geomspace(1e-7 * mean, 8 * np.max(location + width), 8001))
     bells = np.zeros_like(u)
-    for share, place, spread in zip(weight, location, width, strict=True):
+    for fraction, place, spread in zip(weight, location, width, strict=True):
         folded = np.exp(-(((u - place) / spread) ** 2) / 2) + np.exp(-(((u + place) / spread) ** 2) / 2)
-        bells += share * folded / (np.sqrt(2 * np.pi) * spread)
+        bells += fraction * folded / (np.sqrt(2 * np.pi) * spread)
     cumulative = np.append(0, np.cumsum((bells[1:] + bells[:-1]) / 2 * np.diff(u)))
     first_moment = np.sum((u[1:] * bells[1:] + u[:-1] * bells[:-1]) / 2 * np.diff(u))
     return area[-1] + np.interp(gaps * first_moment / mean, u, cumulative), mean
@@ -137,9 +137,9 @@ def test_film_is_the_moment_of_the_distribution(closure):
 def test_cumulative_rises_and_the_mean_below_lies_below():
     gaps, *_ = some_gaps()
     d = np.geomspace(1e-11, 1e-3, 200)
-    share, film, below = gaps.cumulative(d), gaps.film(d), gaps.mean_below(d)
-    assert share.shape == film.shape == (20, 2, 200)
-    assert np.all(np.diff(share) >= -1e-15) and np.all(np.diff(film) >= -1e-15 * gaps.mean[..., None])
+    fraction, film, below = gaps.cumulative(d), gaps.film(d), gaps.mean_below(d)
+    assert fraction.shape == film.shape == (20, 2, 200)
+    assert np.all(np.diff(fraction) >= -1e-15) and np.all(np.diff(film) >= -1e-15 * gaps.mean[..., None])
     inside = d > 1e-3 * gaps.mean[..., None]
     assert np.all((below < d)[inside]) and np.all((below > 0.1 * np.minimum(d, gaps.mean[..., None]))[inside])
     np.testing.assert_allclose(gaps.mean_below(np.inf), gaps.mean / (1 - gaps.contact_fraction), rtol=1e-9)

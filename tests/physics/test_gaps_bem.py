@@ -65,23 +65,23 @@ def press(heights, length, skin, pressure, tolerance=3e-6):
 
 
 def found_by_boundary_elements(spectrum, skin, length, n, pressure, seeds):
-    """Mean gap, and F at shares of it, averaged over surfaces."""
-    means, shares = [], []
+    """Mean gap, and F at fractions of it, averaged over surfaces."""
+    means, fractions = [], []
     for seed in seeds:
         contact, gap = press(surface(spectrum, length, n, seed), length, skin, pressure)
         gap = np.where(contact > 0, 0.0, np.maximum(gap, 0.0))
         means.append(gap.mean())
-        shares.append([np.mean(gap <= share * gap.mean()) for share in SHARES])
-    return np.mean(means), np.mean(shares, axis=0)
+        fractions.append([np.mean(gap <= fraction * gap.mean()) for fraction in SHARES])
+    return np.mean(means), np.mean(fractions, axis=0)
 
 
 def deviations(spectrum, skin, length, n, pressure, seeds):
     """Mean gap relative to theory, and the largest difference of F for both closures."""
-    mean, shares = found_by_boundary_elements(spectrum, skin, length, n, pressure, seeds)
+    mean, fractions = found_by_boundary_elements(spectrum, skin, length, n, pressure, seeds)
     off = []
     for closure in ("gaussian", "sharp"):
         gaps = gap_distribution(pressure, spectrum, skin=skin, closure=closure)
-        off.append(np.abs(gaps.cumulative(SHARES * gaps.mean) - shares).max())
+        off.append(np.abs(gaps.cumulative(SHARES * gaps.mean) - fractions).max())
     return mean / mean_separation(pressure, spectrum, skin=skin), *off
 
 

@@ -23,10 +23,10 @@ def test_pressure_distribution_carries_the_load_and_displaces_by_the_indentation
     contact = sphere_contact(force, radius, reduced_modulus=modulus)
     a, peak = contact.contact_radius, contact.maximum_pressure
 
-    def pressure(share):
-        return peak * np.sqrt(1 - share**2)
+    def pressure(fraction):
+        return peak * np.sqrt(1 - fraction**2)
 
-    load = 2 * np.pi * a**2 * quad(lambda share: share * pressure(share), 0, 1)[0]
+    load = 2 * np.pi * a**2 * quad(lambda fraction: fraction * pressure(fraction), 0, 1)[0]
     assert load == pytest.approx(force, rel=1e-7)
     # displacement at the centre of an axisymmetric pressure: (2/E*) ∫p dr
     centre = 2 / modulus * a * quad(pressure, 0, 1)[0]

@@ -112,7 +112,7 @@ def test_tables_of_bridges() -> None:
         )
         low, high = ({name: float(end(x)) for name, x in groups.items()} for end in (np.min, np.max))
         high["load"] = low["load"] + 0.1
-        high["pull"] = low["pull"]
+        high["wetting_tension"] = low["wetting_tension"]
         tables.append(bridge_table(Box({name: (low[name], high[name]) for name in low}), depth=1e4))
     assert tables[0] is not None and tables[1] is not None
     assert set(tables[0].found.counts) == {"load"}

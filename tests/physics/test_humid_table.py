@@ -93,7 +93,7 @@ def test_shares_of_a_table_are_those_of_the_public_gap_distribution():
         skin=LayeredSkin(young_modulus_layer=14e6, young_modulus_bulk=40e3, layer_thickness=20e-6),
     )
     np.testing.assert_allclose(
-        table.share(groups), gaps.cumulative(3 * gap) - gaps.contact_fraction, rtol=1e-3
+        table.fraction(groups), gaps.cumulative(3 * gap) - gaps.contact_fraction, rtol=1e-3
     )
 
 

@@ -87,7 +87,7 @@ def test_slow_sliding_is_the_dry_contact():
         asperities=asperity_law(SURFACE, WET),
         nodes=200,
     )
-    assert films.asperity_load_share == pytest.approx([1, 1], abs=1e-5)
+    assert films.asperity_load_fraction == pytest.approx([1, 1], abs=1e-5)
     assert films.asperity_pressure[0] @ films.load_weight == pytest.approx(LOAD, rel=1e-6)
     loaded = films.asperity_pressure[0] > 1.0
     expected = mean_separation(films.asperity_pressure[0, loaded], SURFACE, skin=WET)
@@ -95,7 +95,7 @@ def test_slow_sliding_is_the_dry_contact():
     # friction of the fluid is proportional to the speed, down to any speed
     assert films.couette[1] / films.couette[0] == pytest.approx(1e3, rel=1e-5)
     assert films.pressure_flow[1] / films.pressure_flow[0] == pytest.approx(1e3, rel=1e-3)
-    assert (1 - films.asperity_load_share[1]) / (1 - films.asperity_load_share[0]) == pytest.approx(
+    assert (1 - films.asperity_load_fraction[1]) / (1 - films.asperity_load_fraction[0]) == pytest.approx(
         1e3, rel=1e-2
     )
     assert films.fluid_pressure[1].max() / films.fluid_pressure[0].max() == pytest.approx(1e3, rel=1e-2)
@@ -130,7 +130,7 @@ def test_fast_sliding_forgets_the_roughness():
     smooth = lubricated_films(
         product, cylinder_radius=RADIUS, load_per_length=LOAD, reduced_modulus=MODULUS, nodes=200
     )
-    assert rough.asperity_load_share.max() < 1e-6
+    assert rough.asperity_load_fraction.max() < 1e-6
     np.testing.assert_allclose(rough.couette, smooth.couette, rtol=1e-3)
     np.testing.assert_allclose(rough.minimum_film, smooth.minimum_film, rtol=2e-3)
 
@@ -180,7 +180,7 @@ def test_parts_are_monotone_in_speed():
         reduced_modulus=MODULUS,
         asperities=asperity_law(SURFACE, WET),
     )
-    assert np.all(np.diff(films.asperity_load_share) < 0)
+    assert np.all(np.diff(films.asperity_load_fraction) < 0)
     for name in ("minimum_film", "central_film", "couette", "pressure_flow"):
         assert np.all(np.diff(getattr(films, name)) > 0), name
 
@@ -200,7 +200,9 @@ def test_few_nodes_are_enough(nodes):
         )
         for n in (nodes, 500)
     )
-    friction, wanted = (1.447 * f.asperity_load_share + f.couette + f.pressure_flow for f in (films, exact))
+    friction, wanted = (
+        1.447 * f.asperity_load_fraction + f.couette + f.pressure_flow for f in (films, exact)
+    )
     assert np.abs(friction / wanted - 1).max() < 0.006 * (64 / nodes) ** 2
     assert np.abs(films.minimum_film / exact.minimum_film - 1).max() < 0.01 * (64 / nodes) ** 2
 
@@ -225,8 +227,8 @@ def test_answers_do_not_depend_on_the_other_speeds():
             nodes=150,
         )
         assert alone.couette[0] == pytest.approx(together.couette[i], rel=3e-3)
-        assert alone.asperity_load_share[0] == pytest.approx(
-            together.asperity_load_share[i], rel=1e-2, abs=1e-8
+        assert alone.asperity_load_fraction[0] == pytest.approx(
+            together.asperity_load_fraction[i], rel=1e-2, abs=1e-8
         )
     # in any order
     back = lubricated_films(
@@ -258,7 +260,9 @@ def test_dimensionless_groups():
     )
     np.testing.assert_allclose(second.couette, first.couette, rtol=1e-8)
     np.testing.assert_allclose(second.separation, 3 * first.separation, rtol=1e-8)
-    np.testing.assert_allclose(second.asperity_load_share, first.asperity_load_share, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(
+        second.asperity_load_fraction, first.asperity_load_fraction, rtol=1e-7, atol=1e-9
+    )
 
 
 def test_trivial_factors_change_nothing():
@@ -313,6 +317,6 @@ def test_an_independent_solver_agrees(number, count, tolerance):
     for step in np.geomspace(1.0, number, 7):
         film, guess, found = module.plain_film(step, position, kernel, lambda gap: scaled(gap)[0], guess)
     assert found
-    share = scaled(film)[0].sum() * (position[1] - position[0]) * 2 / np.pi
+    fraction = scaled(film)[0].sum() * (position[1] - position[0]) * 2 / np.pi
     assert film.min() * HERTZ.half_width**2 / RADIUS == pytest.approx(ours.minimum_film[0], rel=tolerance)
-    assert share == pytest.approx(ours.asperity_load_share[0], rel=2 * tolerance, abs=1e-4)
+    assert fraction == pytest.approx(ours.asperity_load_fraction[0], rel=2 * tolerance, abs=1e-4)

@@ -240,7 +240,7 @@ def show(products, sphere, line, here, there):
     )
     for k, product in enumerate(products):
         row = [here[k], there[k]]
-        for name in ("couette", "pressure_flow", "asperity_load_share"):
+        for name in ("couette", "pressure_flow", "asperity_load_fraction"):
             row += [getattr(sphere, name)[k], getattr(line, name)[k]]
         films = [
             x
@@ -327,9 +327,9 @@ def test_flank_of_other_balls(bulk, layer, height, radius, force):
     products = middle * np.geomspace(0.2, 10.0, 7)
     sphere, _, line = both_curves(products, ball, skin, spectrum, 0.0, polar_grid(34, 21, 0.08, 20.0))
     speeds = []
-    for share in (sphere.asperity_load_share, line.asperity_load_share):
-        assert share[0] > 0.6 > 0.4 > share[-1]
-        (root,) = CubicSpline(np.log(products), share - 0.5).roots(extrapolate=False)
+    for fraction in (sphere.asperity_load_fraction, line.asperity_load_fraction):
+        assert fraction[0] > 0.6 > 0.4 > fraction[-1]
+        (root,) = CubicSpline(np.log(products), fraction - 0.5).roots(extrapolate=False)
         speeds.append(np.exp(root))
     print(
         f"a/R {hertz.contact_radius / radius:.2f}: half of the load at {speeds[0] / speeds[1]:.3f} of the speed"
@@ -381,7 +381,7 @@ def test_rings_and_rectangles_agree(rough_film):
     fine, state, number = rough_film
 
     def summary(solver, film):
-        """Share of the load that asperities carry, ∫dA/H and the load's moment over the contact."""
+        """Fraction of the load that asperities carry, ∫dA/H and the load's moment over the contact."""
         grid, h = solver.grid, solver.separation(film)
         near = grid.area * (grid.radius < 1)
         carried = grid.area @ solver.law(h)[0] / LOAD

@@ -158,9 +158,9 @@ def test_table_agrees_with_its_source_between_the_points():
     factors = tabulated_flow_factors(SURFACE, WET)
     gaps = gap_distribution(3.1e3, SURFACE, skin=WET)
     edges = np.geomspace(22.4e-8, 2e-3, 3000)
-    share, volume = np.diff(gaps.cumulative(edges)), np.diff(gaps.film(edges))
-    filled = share > 1e-14
-    direct = gap_flow_factors(volume[filled] / share[filled], share[filled])
+    fraction, volume = np.diff(gaps.cumulative(edges)), np.diff(gaps.film(edges))
+    filled = fraction > 1e-14
+    direct = gap_flow_factors(volume[filled] / fraction[filled], fraction[filled])
     mean = np.array([float(gaps.mean)])
     assert factors.flow(mean)[0][0] == pytest.approx(direct.pressure_flow, rel=0.02)
     assert factors.flow(mean)[2][0] == pytest.approx(direct.shear_flow, rel=0.05)

@@ -79,7 +79,7 @@ def test_parts_add_up_and_the_boundary_part_falls(paper):
     assert np.all(np.diff(paper.boundary) < 0)
     assert np.all(np.diff(paper.couette) > 0)
     # real contact is proportional to the load that asperities carry
-    ratio = paper.boundary / paper.asperity_load_share
+    ratio = paper.boundary / paper.asperity_load_fraction
     np.testing.assert_allclose(ratio, ratio[0], rtol=2e-3)
 
 
@@ -96,7 +96,7 @@ def test_slow_limit_is_dry_friction_at_the_nominal_pressure():
     )
     area = relative_contact_area(5000.0, twice_stress_variance(spectrum, skin))
     assert curve([1e-11]).friction_coefficient[0] == pytest.approx(PAPER["stress"] * area / 5000, rel=2e-3)
-    assert curve([1e-11]).asperity_load_share[0] == pytest.approx(1.0, abs=1e-6)
+    assert curve([1e-11]).asperity_load_fraction[0] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_boundary_part_saturates_where_contact_is_nearly_complete():
@@ -263,7 +263,9 @@ def test_similarity_of_ball_sizes():
         radius=PAPER["radius"] / scale,
     )
     np.testing.assert_allclose(second.minimum_film, first.minimum_film * scale, rtol=1e-6)
-    np.testing.assert_allclose(second.asperity_load_share, first.asperity_load_share, rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(
+        second.asperity_load_fraction, first.asperity_load_fraction, rtol=1e-5, atol=1e-9
+    )
     np.testing.assert_allclose(second.couette, first.couette * scale, rtol=1e-6)
     np.testing.assert_allclose(second.boundary, first.boundary / scale, rtol=1e-3)
 

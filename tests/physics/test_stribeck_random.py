@@ -44,14 +44,14 @@ def check(seed, cases):
         assert np.isfinite(films.couette).all()
         assert np.isfinite(films.pressure_flow).all()
         assert np.all(films.minimum_film > 0)
-        assert np.all(films.asperity_load_share >= -1e-9)
-        assert np.all(films.asperity_load_share <= 1 + 1e-9)
-        assert np.all(np.diff(films.asperity_load_share) < 1e-9)
+        assert np.all(films.asperity_load_fraction >= -1e-9)
+        assert np.all(films.asperity_load_fraction <= 1 + 1e-9)
+        assert np.all(np.diff(films.asperity_load_fraction) < 1e-9)
         assert np.all(np.diff(films.minimum_film) > -1e-9 * films.minimum_film[1:])
         assert films.fluid_pressure.min() > -1e-6 * films.fluid_pressure.max()
         # the fluid's share with what it carries before the grid, 2λ/(3X²), and that of the asperities
         carried = films.fluid_pressure @ films.load_weight / load
-        assert np.all(np.abs(carried + films.asperity_load_share - 1) < 0.005)
+        assert np.all(np.abs(carried + films.asperity_load_fraction - 1) < 0.005)
     return points
 
 
@@ -71,7 +71,7 @@ def test_few_nodes_are_enough_all_over():
     for seed in range(40):
         _, coarse = random_films(np.random.default_rng(seed), 80)
         _, fine = random_films(np.random.default_rng(seed), 400)
-        friction, wanted = (f.asperity_load_share + f.couette + f.pressure_flow for f in (coarse, fine))
+        friction, wanted = (f.asperity_load_fraction + f.couette + f.pressure_flow for f in (coarse, fine))
         worst.append(np.abs(friction / wanted - 1).max())
     assert np.median(worst) < 5e-3
     # the worst case is nearly smooth, its thinnest film 12 nm, on a grid that reaches up to λ = 93

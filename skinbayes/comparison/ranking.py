@@ -1,4 +1,4 @@
-"""How a fit stands against yardsticks: whether it beats, equals or loses to them, and what each leaves unexplained."""
+"""How a fit stands against baseline_models: whether it beats, equals or loses to them, and what each leaves unexplained."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from skinbayes.comparison.models import Comparison, compare_scores, grouped_by
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
 from skinbayes.comparison.scores import Scores, difference
-from skinbayes.comparison.words import (
+from skinbayes.comparison.verdicts import (
     few_levels,
     level_question,
     pointwise_question,
     sign_of,
-    singular,
     unreliable_levels,
 )
+from skinbayes.phrases import singular
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -33,18 +33,18 @@ SCATTER_DRAWS = 200
 
 
 @dataclass(frozen=True)
-class Standing:
-    """How a fit stands against one yardstick in one question.
+class RankedAgainst:
+    """How a fit stands against one baseline model in one question.
 
     Attributes
     ----------
-    yardstick : name of the yardstick
+    baseline_model : name of the baseline model
     question : ``"datum"``, or the grouping column whose levels are left out
-    difference, difference_se : predictive density of the fit less that of the yardstick, and its standard error
+    difference, difference_se : predictive density of the fit less that of the baseline model, and its standard error
     verdict : ``"beats"``, ``"equals"`` or ``"loses to"``
     """
 
-    yardstick: str
+    baseline_model: str
     question: str
     difference: float
     difference_se: float
@@ -66,37 +66,37 @@ class Scatter:
 
 
 @dataclass(frozen=True)
-class Yardsticks:
-    """A fit beside its yardsticks.
+class AgainstBaselines:
+    """A fit beside its baseline_models.
 
     Attributes
     ----------
     name : the fit
-    comparison : the fit and its yardsticks, best first
-    standings : the fit against each yardstick in each question
+    comparison : the fit and its baseline models, best first
+    ranking : the fit against each baseline model in each question
     scatter : what each model leaves unexplained, by name
     floor : the noise floor of the data, or None
-    missing : sentences on yardsticks that could not be had
+    missing : sentences on baseline models that could not be had
     """
 
     name: str
     comparison: Comparison
-    standings: tuple[Standing, ...]
+    ranking: tuple[RankedAgainst, ...]
     scatter: dict[str, Scatter]
     floor: NoiseFloor | None
     missing: tuple[str, ...] = ()
 
     @property
     def loses(self) -> bool:
-        """Whether the fit loses to a yardstick in any question."""
-        return any(standing.verdict == VERDICTS[-1] for standing in self.standings)
+        """Whether the fit loses to a baseline model in any question."""
+        return any(ranked.verdict == VERDICTS[-1] for ranked in self.ranking)
 
     def sentences(self) -> list[str]:
-        """Whether the fit beats, equals or loses to each yardstick in each question, in words."""
+        """Whether the fit beats, equals or loses to each baseline model in each question, in words."""
         said: list[str] = []
-        for question in dict.fromkeys(standing.question for standing in self.standings):
+        for question in dict.fromkeys(ranked.question for ranked in self.ranking):
             said += self._question(question)
-            said += [self._words(standing) for standing in self.standings if standing.question == question]
+            said += [self._words(ranked) for ranked in self.ranking if ranked.question == question]
             if question != SINGLE:
                 said += few_levels(self.comparison.models[0].left_out[question])
         for model in self.comparison.models:
@@ -152,7 +152,7 @@ class Yardsticks:
         """Everything as plain types."""
         return {
             "model": self.name,
-            "standings": [vars(standing) for standing in self.standings],
+            "ranking": [vars(ranked) for ranked in self.ranking],
             "loses": self.loses,
             "models": [
                 model.to_dict()
@@ -172,44 +172,42 @@ class Yardsticks:
             return [pointwise_question(grouped)] if grouped else []
         return [level_question(question, grouped)]
 
-    def _words(self, standing: Standing) -> str:
-        what = (
-            "a left-out datum" if standing.question == SINGLE else f"a left-out {singular(standing.question)}"
-        )
-        gap, error = standing.difference, standing.difference_se
-        if standing.verdict == VERDICTS[0]:
+    def _words(self, ranked: RankedAgainst) -> str:
+        what = "a left-out datum" if ranked.question == SINGLE else f"a left-out {singular(ranked.question)}"
+        gap, error = ranked.difference, ranked.difference_se
+        if ranked.verdict == VERDICTS[0]:
             return (
-                f"'{self.name}' equals '{standing.yardstick}' in predicting {what}: they differ by {gap:.1f} ± {error:.1f}, "
+                f"'{self.name}' equals '{ranked.baseline_model}' in predicting {what}: they differ by {gap:.1f} ± {error:.1f}, "
                 "which is no difference."
             )
-        if standing.verdict == VERDICTS[1]:
-            return f"'{self.name}' beats '{standing.yardstick}' in predicting {what}, by {gap:.1f} ± {error:.1f}."
+        if ranked.verdict == VERDICTS[1]:
+            return f"'{self.name}' beats '{ranked.baseline_model}' in predicting {what}, by {gap:.1f} ± {error:.1f}."
         return (
-            f"'{self.name}' LOSES to '{standing.yardstick}' in predicting {what}, by {-gap:.1f} ± {error:.1f}: "
+            f"'{self.name}' LOSES to '{ranked.baseline_model}' in predicting {what}, by {-gap:.1f} ± {error:.1f}: "
             "its physics makes this prediction worse."
         )
 
 
-def beside(fit: Fit, scores: Sequence[Scores], fits: Sequence[Fit]) -> Yardsticks:
+def beside(fit: Fit, scores: Sequence[Scores], fits: Sequence[Fit]) -> AgainstBaselines:
     """Put a fit beside other fits of the same data.
 
     Parameters
     ----------
     fit : the fit
     scores : of the fits
-    fits : the fit itself and the yardsticks
+    fits : the fit itself and the baseline models
     """
     own = scores[0]
     comparison = compare_scores(scores, grouped_by(fits))
-    standings = []
+    ranking = []
     for question in (SINGLE, *comparison.columns):
         for other in scores[1:]:
             gap, error = difference(_scores_of(own, question), _scores_of(other, question))
             verdict = VERDICTS[sign_of(gap, error)]
-            standings.append(Standing(other.name, question, gap, error, verdict))
+            ranking.append(RankedAgainst(other.name, question, gap, error, verdict))
     floor = None if fit.problem is None else noise_floor(fit.problem)
     scatter = {entry.name: _scatter(entry) for entry in fits}
-    return Yardsticks(fit.name, comparison, tuple(standings), scatter, floor)
+    return AgainstBaselines(fit.name, comparison, tuple(ranking), scatter, floor)
 
 
 def _scores_of(scores: Scores, question: str) -> Any:

@@ -5,36 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut
+from skinbayes.phrases import plural, singular
 
 SMALL = 4.0
 """A smaller difference of predictive densities says nothing, whatever its standard error."""
-
-PLURALS = {
-    "person": "persons",
-    "liquid": "liquids",
-    "state": "states",
-    "body_site": "body sites",
-    "counterface": "counterfaces",
-    "source": "sources",
-    "row_label": "rows",
-}
-"""Grouping columns in the plural."""
 
 
 def sign_of(difference: float, error: float) -> int:
     """1 if a difference of predictive densities is clearly positive, −1 if clearly negative, else 0."""
     clear = abs(difference) >= 2 * error and abs(difference) >= SMALL
     return (1 if difference > 0 else -1) if clear else 0
-
-
-def singular(column: str) -> str:
-    """A grouping column as a word: ``body site``."""
-    return column.replace("_", " ") if column != "row_label" else "row"
-
-
-def plural(column: str) -> str:
-    """A grouping column as a word in the plural: ``body sites``."""
-    return PLURALS.get(column, singular(column) + "s")
 
 
 def pointwise_question(grouped_by: Sequence[str]) -> str:

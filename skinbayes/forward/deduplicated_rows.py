@@ -49,7 +49,7 @@ def along_rows(
     return found
 
 
-def once_for_alike(
+def once_for_distinct(
     inputs: Inputs, function: Callable[[Inputs], dict[str, FloatArray]]
 ) -> dict[str, FloatArray]:
     """Evaluate a function once for all rows whose inputs agree.
@@ -67,7 +67,7 @@ def once_for_alike(
     Examples
     --------
     >>> rows = {"film": np.array([[6.0]]), "rate": np.array([[3.0, 3.0, 2.0]])}
-    >>> once_for_alike(rows, lambda common: {"time": common["film"] / common["rate"]})["time"]
+    >>> once_for_distinct(rows, lambda common: {"time": common["film"] / common["rate"]})["time"]
     array([[2., 2., 3.]])
     """
     tables = {name: np.atleast_2d(np.asarray(value, dtype=float)) for name, value in inputs.items()}

@@ -11,7 +11,7 @@ import pytest
 from grouped_toys import Design
 
 import skinbayes.fit
-from skinbayes.comparison import against_yardsticks, noise_floor
+from skinbayes.comparison import against_baselines, noise_floor
 from skinbayes.comparison.noise_floor import NoiseFloor
 from skinbayes.errors import InputError
 from skinbayes.fit import Fit, load_fit, sample
@@ -20,7 +20,7 @@ from skinbayes.problem import load_problem
 QUICK = {"seed": 3, "ess": 400, "walkers": 32, "max_steps": 400, "ensembles": 2}
 
 THEORY = """
-yardsticks = {yardsticks}
+baseline_models = {baseline_models}
 title = "A law of speed times viscosity"
 forward = "stribeck-descriptive"
 [data]
@@ -60,7 +60,7 @@ typical_friction_coefficient = { lognormal = [0.5, 1.0] }
 )
 
 
-def write(folder: Path, law: bool, yardsticks: str = '["null.toml"]') -> Path:
+def write(folder: Path, law: bool, baseline_models: str = '["null.toml"]') -> Path:
     """Ten liquids and four persons: friction that follows the law of the model, or is scatter about 0.3."""
     rng = np.random.default_rng(12)
     lines = ["person,liquid,speed_viscosity_product [N/m],friction_coefficient [1]"]
@@ -76,13 +76,13 @@ def write(folder: Path, law: bool, yardsticks: str = '["null.toml"]') -> Path:
     (folder / "curve.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     (folder / "null.toml").write_text(NULL, encoding="utf-8")
     path = folder / "theory.toml"
-    path.write_text(THEORY.format(yardsticks=yardsticks, scatter=SCATTER), encoding="utf-8")
+    path.write_text(THEORY.format(baseline_models=baseline_models, scatter=SCATTER), encoding="utf-8")
     return path
 
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Yardsticks are fitted with few walkers; the names of those that were sampled."""
+    """Baseline models are fitted with few walkers; the names of those that were sampled."""
     sampled: list[str] = []
 
     def short(problem, **options):
@@ -97,9 +97,9 @@ def test_a_law_that_holds_beats_the_null_model(tmp_path: Path, quick: list[str])
     run = tmp_path / "run"
     fit = sample(load_problem(write(tmp_path, law=True)), **QUICK, directory=run)
     heard: list[str] = []
-    found = against_yardsticks(fit, run, progress=lambda name, _: heard.append(name))
+    found = against_baselines(fit, run, progress=lambda name, _: heard.append(name))
     assert found is not None and quick == ["null"] and set(heard) == {"null"}
-    verdicts = {standing.question: standing.verdict for standing in found.standings}
+    verdicts = {ranked.question: ranked.verdict for ranked in found.ranking}
     assert verdicts["liquid"] == "beats"
     assert not found.loses
     said = found.sentences()
@@ -115,56 +115,58 @@ def test_a_law_that_holds_beats_the_null_model(tmp_path: Path, quick: list[str])
     assert {model["name"] for model in document["models"]} == {"theory", "null"}
     assert set(document["models"][0]["group_scales"]) == {"person", "liquid"}
     assert document["noise_floor"]["degrees_of_freedom"] == 27
-    stored_yardsticks(tmp_path, run, found.to_dict(), quick)
+    stored_baseline_models(tmp_path, run, found.to_dict(), quick)
 
 
-def stored_yardsticks(folder: Path, run: Path, before: dict, quick: list[str]) -> None:
+def stored_baseline_models(folder: Path, run: Path, before: dict, quick: list[str]) -> None:
     """The rest of the test above, on the run it made: stored fits are used again, also when the user's files are gone."""
-    stored = load_fit(run / "yardsticks" / "null")
+    stored = load_fit(run / "baselines" / "null")
     assert stored.provenance["sampling"]["seed"] == 3
     assert stored.provenance["data"]["fingerprint"] == load_fit(run).provenance["data"]["fingerprint"]
     (folder / "null.toml").unlink()
     fit = load_fit(run)
     assert fit.problem is not None
-    again = against_yardsticks(fit, run)
+    again = against_baselines(fit, run)
     assert quick == ["null"]
     assert again is not None and again.to_dict() == before
     # another model of this name is fitted anew
-    copy = run / "yardstick-models" / "null.toml"
+    copy = run / "baseline-models" / "null.toml"
     copy.write_text(NULL.replace("[0.5, 1.0]", "[0.5, 0.7]"), encoding="utf-8")
-    changed = against_yardsticks(fit, run)
+    changed = against_baselines(fit, run)
     assert quick == ["null", "null"]
     assert changed is not None and changed.to_dict() != before
 
 
 def test_a_law_that_does_not_hold_loses(tmp_path: Path, quick: list[str]) -> None:
     fit = sample(load_problem(write(tmp_path, law=False)), **QUICK)
-    found = against_yardsticks(fit)
+    found = against_baselines(fit)
     assert found is not None and found.loses
-    assert not (tmp_path / "yardsticks").exists()
-    assert {s.question: s.verdict for s in found.standings}["liquid"] == "loses to"
+    assert not (tmp_path / "baselines").exists()
+    assert {s.question: s.verdict for s in found.ranking}["liquid"] == "loses to"
     assert any("'theory' LOSES to 'null' in predicting a left-out liquid" in s for s in found.sentences())
-    (standing,) = [s for s in found.standings if s.question == "liquid"]
+    (ranked,) = [s for s in found.ranking if s.question == "liquid"]
     own, other = (
         next(m for m in found.comparison.models if m.name == name).left_out["liquid"]
         for name in ("theory", "null")
     )
-    assert standing.difference == pytest.approx(own.elpd - other.elpd, rel=1e-12)
+    assert ranked.difference == pytest.approx(own.elpd - other.elpd, rel=1e-12)
     gap = own.pointwise - other.pointwise
-    assert standing.difference_se == pytest.approx(math.sqrt(10) * np.std(gap, ddof=1), rel=1e-12)
+    assert ranked.difference_se == pytest.approx(math.sqrt(10) * np.std(gap, ddof=1), rel=1e-12)
 
 
 def test_a_model_equals_itself_under_another_name(tmp_path: Path, quick: list[str]) -> None:
-    path = Design(3, persons=5).write(tmp_path, "0.2", "0.4", "first", top='yardsticks = ["second.toml"]')
+    path = Design(3, persons=5).write(
+        tmp_path, "0.2", "0.4", "first", top='baseline_models = ["second.toml"]'
+    )
     Design(3, persons=5).write(tmp_path, "0.2", "0.4", "second")
     fit = sample(load_problem(path), **QUICK)
-    found = against_yardsticks(fit)
+    found = against_baselines(fit)
     assert found is not None
-    assert {standing.verdict for standing in found.standings} == {"equals"}
+    assert {ranked.verdict for ranked in found.ranking} == {"equals"}
     assert sum("equals 'second'" in sentence for sentence in found.sentences()) == 3
 
 
-def test_selected_rows_are_those_of_the_yardstick_too(tmp_path: Path, quick: list[str]) -> None:
+def test_selected_rows_are_those_of_the_baseline_model_too(tmp_path: Path, quick: list[str]) -> None:
     path = write(tmp_path, law=False)
     text = path.read_text(encoding="utf-8")
     kept = ", ".join(f'"l{i}"' for i in range(3))
@@ -175,21 +177,25 @@ def test_selected_rows_are_those_of_the_yardstick_too(tmp_path: Path, quick: lis
     path.write_text(text, encoding="utf-8")
     run = tmp_path / "run"
     fit = sample(load_problem(path), **QUICK, directory=run)
-    found = against_yardsticks(fit, run)
+    found = against_baselines(fit, run)
     assert found is not None and found.comparison.rows == 12
-    stored = load_fit(run / "yardsticks" / "null")
+    stored = load_fit(run / "baselines" / "null")
     assert stored.problem is not None and stored.problem.conditions.n_rows == 12
 
 
-def test_without_yardsticks_there_is_nothing_to_say(tmp_path: Path) -> None:
+def test_without_baseline_models_there_is_nothing_to_say(tmp_path: Path) -> None:
     fit = sample(
-        load_problem(write(tmp_path, law=True, yardsticks="[]")), seed=3, ess=100, walkers=32, max_steps=200
+        load_problem(write(tmp_path, law=True, baseline_models="[]")),
+        seed=3,
+        ess=100,
+        walkers=32,
+        max_steps=200,
     )
-    assert against_yardsticks(fit) is None
+    assert against_baselines(fit) is None
 
 
-def test_yardsticks_that_are_not_there_or_explain_something_else(tmp_path: Path) -> None:
-    missing = load_problem(write(tmp_path, law=True, yardsticks='["gone.toml"]'))
+def test_baseline_models_that_are_not_there_or_explain_something_else(tmp_path: Path) -> None:
+    missing = load_problem(write(tmp_path, law=True, baseline_models='["gone.toml"]'))
     with pytest.raises(InputError, match=r"no file .*gone\.toml"):
         sample(missing, directory=tmp_path / "run")
     assert not (tmp_path / "run").exists()
@@ -205,7 +211,7 @@ def test_yardsticks_that_are_not_there_or_explain_something_else(tmp_path: Path)
         (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
     fit = sample(load_problem(path), seed=3, ess=100, walkers=32, max_steps=200)
     with pytest.raises(InputError, match="does not explain the same data"):
-        against_yardsticks(fit)
+        against_baselines(fit)
 
 
 # -- noise floor -----------------------------------------------------------------------------------------------------
@@ -237,7 +243,7 @@ def test_no_floor_without_groups() -> None:
 
 
 @pytest.mark.slow
-def test_the_shipped_yardsticks_on_the_finger_data(tmp_path: Path) -> None:
+def test_the_shipped_baseline_models_on_the_finger_data(tmp_path: Path) -> None:
     fits: dict[str, Fit] = {
         name: sample(load_problem(name), seed=1) for name in ("finger-null", "finger-descriptive")
     }

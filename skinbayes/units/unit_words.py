@@ -86,7 +86,7 @@ NO_UNITS = {
     "px": "a pixel has no size of its own: convert with the resolution of the picture",
     "dot": "a dot has no size of its own: convert with the resolution of the picture",
     "rpm": "a rotation is no speed: the speed is 2π times the radius times the rotations per time",
-    "rh": "relative humidity is a share: write 50 % or 0.5",
+    "rh": "relative humidity is a fraction: write 50 % or 0.5",
     "hz": "a frequency is written 1/s, and a shear rate or a speed is something else",
 }
 """Words that are often meant to be units, and why they are none."""
@@ -112,7 +112,7 @@ def _spellings() -> tuple[dict[str, str], dict[str, str]]:
 
 _SYMBOLS, _NAMES = _spellings()
 _LONGEST = 40
-_ALIKE = str.maketrans({
+_SAME_CHARACTER = str.maketrans({
     "º": "°", "˚": "°", "μ": "µ", "−": "-", "‐": "-", "‑": "-", "–": "-", "⁄": "/", "∕": "/", "÷": "/",
     "·": "*", "⋅": "*", "∙": "*", "•": "*", "×": "*", "‧": "*",
 })  # fmt: skip
@@ -140,7 +140,7 @@ def plain_unit(text: str) -> str:
     >>> plain_unit("N⋅m⁻¹"), plain_unit("ºC"), plain_unit("deg C")
     ('N*m-1', 'degC', 'degC')
     """
-    text = unicodedata.normalize("NFKC", text.translate(_ALIKE)).translate(_ALIKE).strip()
+    text = unicodedata.normalize("NFKC", text.translate(_SAME_CHARACTER)).translate(_SAME_CHARACTER).strip()
     return _DEGREES.sub(lambda found: "degC" if found[1] else "degF" if found[2] else "K", text)
 
 
@@ -191,13 +191,15 @@ def canonical_unit(text: str) -> str:
             position, operand = position + between.end(), True
         else:
             raise UnknownUnit(plain)
-    shares = _SHARES.findall(found)
-    if operand or depth or len(shares) > 1 or not {"", "**1", "**-1"}.issuperset(shares):  # "% %" is a slip
+    fractions = _FRACTIONS.findall(found)
+    if (
+        operand or depth or len(fractions) > 1 or not {"", "**1", "**-1"}.issuperset(fractions)
+    ):  # "% %" is a slip
         raise UnknownUnit(plain)
     return found
 
 
-_SHARES = re.compile(r"(?:percent|permille)\)(\*\*-?[0-9])?")
+_FRACTIONS = re.compile(r"(?:percent|permille)\)(\*\*-?[0-9])?")
 
 
 def is_unit(text: str) -> bool:

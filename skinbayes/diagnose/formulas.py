@@ -1,32 +1,17 @@
-"""Numbers and lists as people write them."""
+"""Percentages, products of powers and changes of parameters as people write them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from skinbayes.arrays import FloatArray
+from skinbayes.phrases import and_list
 
 
-def listed(words: Sequence[str]) -> str:
-    """``"a, b and c"``.
-
-    Examples
-    --------
-    >>> listed(["a", "b", "c"])
-    'a, b and c'
-    """
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def percent(share: float) -> str:
-    """A share as a percentage with two digits: ``"12 %"``, ``"0.4 %"``."""
-    value = 100.0 * share
+def percent(fraction: float) -> str:
+    """A fraction as a percentage with two digits: ``"12 %"``, ``"0.4 %"``."""
+    value = 100.0 * fraction
     return f"{value:.0f} %" if value >= 9.95 else f"{value:.2g} %"
-
-
-def rows_text(count: int) -> str:
-    """``"1 row"``, ``"11 rows"``."""
-    return f"{count} row{'' if count == 1 else 's'}"
 
 
 def power(name: str, low: float, value: float, high: float, exact: float | None) -> str:
@@ -69,7 +54,7 @@ def product(
     if below:
         text += f" / {below[0]}" if len(below) == 1 else f" / ({' · '.join(below)})"
     if others:
-        text = f"{text} with {listed(others)}" if exponents else listed(others)
+        text = f"{text} with {and_list(others)}" if exponents else and_list(others)
     return text
 
 
@@ -84,12 +69,12 @@ def change(names: Sequence[str], amounts: FloatArray, relative: Sequence[bool], 
     if not constant:
         up = [name for name, verb in zip(names, verbs, strict=True) if verb == "raising"]
         down = [name for name, verb in zip(names, verbs, strict=True) if verb == "lowering"]
-        moves = ([f"raising {listed(up)}"] if up else []) + ([f"lowering {listed(down)}"] if down else [])
+        moves = ([f"raising {and_list(up)}"] if up else []) + ([f"lowering {and_list(down)}"] if down else [])
         text = f"{' and '.join(moves)} together, in a proportion that varies over the prior,"
     elif len(set(sizes)) == 1 and len(set(verbs)) == 1 and len(names) > 1:
-        text = f"{verbs[0]} {listed(list(names))} by {sizes[0]} each"
+        text = f"{verbs[0]} {and_list(list(names))} by {sizes[0]} each"
     else:
         for name, verb, size in zip(names, verbs, sizes, strict=True):
             parts.append(f"{verb} {name} by {size}")
-        text = listed(parts)
+        text = and_list(parts)
     return text[0].upper() + text[1:]
