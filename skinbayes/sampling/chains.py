@@ -8,6 +8,7 @@ from math import ceil
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.sampling.importance import ImportanceDraws
 from skinbayes.sampling.stopping import StoppingReport
 
 
@@ -24,6 +25,8 @@ class Chains:
     evaluations : log-densities computed, starts included
     invalid : how many of them were NaN or +inf and were taken as −inf
     first_invalid : the first position of that kind, shape ``(D,)``; NaN if there was none
+    importance : independent weighted draws that take the place of the positions, if importance sampling was accepted
+    refused : why it was not, the last time it was tried; empty if it was not tried
     """
 
     names: tuple[str, ...]
@@ -33,11 +36,13 @@ class Chains:
     evaluations: int
     invalid: int
     first_invalid: FloatArray
+    importance: ImportanceDraws | None = None
+    refused: str = ""
 
     @property
     def converged(self) -> bool:
-        """Whether the stopping rule was met."""
-        return self.report.converged
+        """Whether the stopping rule was met, or importance sampling accepted."""
+        return self.report.converged or self.importance is not None
 
     @property
     def steps(self) -> int:

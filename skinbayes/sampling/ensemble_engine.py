@@ -5,14 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
+from skinbayes.sampling.advance import Density
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.ensembles import run_ensembles
+from skinbayes.sampling.evidence import bridge
+from skinbayes.sampling.importance import ImportanceDraws, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import RunProgress
 from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.verdict import verdict
+
+EVIDENCE_DRAWS = 2000
+"""Draws of a proposal for ln Z, where walkers gave those of the posterior: its error is then about 0.02."""
 
 DRAWS_PER_CHAIN = 2500
 """Draws kept of each ensemble; nearly independent, so four ensembles give quantiles to about 0.01 sd."""
@@ -31,11 +39,65 @@ class EnsembleEngine:
         store: SampleStore | None = None,
         progress: Callable[[RunProgress], None] | None = None,
     ) -> Draws:
-        """Nearly independent draws; a chain is an ensemble."""
+        """Nearly independent draws, a chain being an ensemble, or weighted ones if importance sampling was accepted; ln Z."""
         chains = run_ensembles(target, options, store=store, progress=progress)
+        if chains.importance is not None:
+            return _weighted(chains, chains.importance)
         positions, log_density = chains.draws(DRAWS_PER_CHAIN)
         words = verdict(chains, target, options)
-        return Draws(positions, diagnostics=_diagnostics(chains, words), log_density=log_density)
+        evidence = _evidence(chains, target, options) if chains.converged else None
+        return Draws(positions, None, evidence, _diagnostics(chains, words), log_density)
+
+
+def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
+    words = (
+        f"Converged: {chains.positions.shape[0]} ensembles found the posterior in {chains.steps} steps, and "
+        f"{len(found.positions)} independent draws by importance sampling have an effective sample size of at least "
+        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f})."
+    )
+    diagnostics = {
+        "converged": True,
+        "verdict": words,
+        "missing": [],
+        "ensembles": chains.positions.shape[0],
+        "walkers": chains.positions.shape[2],
+        "steps": chains.steps,
+        "importance_draws": len(found.positions),
+        "pareto_k": found.shape,
+        "evaluations": chains.evaluations + found.evaluations,
+        "invalid": chains.invalid,
+        "first_invalid": chains.first_invalid if chains.invalid else None,
+        "ess_bulk": found.ess,
+        "ess_tail": found.tail_ess,
+    }
+    return Draws(found.positions, found.log_weights, _bridged(chains, found), diagnostics, found.log_density)
+
+
+def _evidence(chains: Chains, target: Target, options: SamplerOptions) -> tuple[float, float] | None:
+    """ln Z and its error where walkers gave the draws; None if no proposal resembles the posterior."""
+    kept = chains.positions[:, chains.kept]
+    density = Density(target, options.vectorize)
+    found = importance_draws(
+        kept.reshape(len(kept), -1, kept.shape[-1]),
+        chains.log_density[:, chains.kept].reshape(len(kept), -1),
+        density,
+        EVIDENCE_DRAWS / 2,
+        np.random.default_rng([options.seed, 9]),
+        EVIDENCE_DRAWS,
+    )
+    return _bridged(chains, found) if isinstance(found, ImportanceDraws) else None
+
+
+def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:
+    positions, log_density = chains.draws(DRAWS_PER_CHAIN)
+    proposal = found.proposal.log_density(positions.reshape(-1, positions.shape[-1])).reshape(
+        log_density.shape
+    )
+    tau = chains.report.tau.max()
+    kept = chains.positions[:, chains.kept, :, 0].size
+    effective = min(kept / tau, log_density.size) if np.isfinite(tau) else chains.positions.shape[0]
+    evidence = bridge(log_density - proposal, found.log_density - found.log_proposal, effective)
+    return evidence.value, evidence.error
 
 
 def _diagnostics(chains: Chains, words: str) -> dict[str, Any]:

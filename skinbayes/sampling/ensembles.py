@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.advance import EnsembleState, EnsembleSteps
 from skinbayes.sampling.chains import Chains
+from skinbayes.sampling.finish import Finish
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import EnsembleProgress
@@ -19,7 +22,7 @@ from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
-from skinbayes.sampling.workers import advancing
+from skinbayes.sampling.workers import working
 
 
 class SamplingInterrupted(KeyboardInterrupt):
@@ -43,7 +46,7 @@ def run_ensembles(
     progress: Callable[[EnsembleProgress], None] | None = None,
     moves: MoveFactory | None = None,
 ) -> Chains:
-    """Sample a target until the stopping rule is met or ``max_steps`` are made.
+    """Sample a target until the stopping rule is met, importance sampling is accepted or ``max_steps`` are made.
 
     The draws depend on the target, ``options.seed``, the numbers of ensembles and walkers and the moves alone. They are
     the same to the last bit with any number of cores, vectorised or not (if the target treats rows alike), and
@@ -76,20 +79,26 @@ def run_ensembles(
     report: StoppingReport | None = None
     states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
     resumed, spent = len(rounds), 0.0
+    finish = Finish(target, options)
     try:
-        with advancing(target, options, moves) as advance_all:
+        with working(target, options, moves) as crew:
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
                     report = _judged(target, options, rounds)
                 if progress is not None:
                     progress(_progress(steps, last, report, options, states, spent, len(rounds) - resumed))
-                if report is not None and (report.converged or steps >= last):
+                accepted = finish.attempt(steps, partial(_joined, rounds), crew)
+                if report is None and accepted is not None:
+                    report = _judged(target, options, rounds)
+                if report is not None and (accepted is not None or report.converged or steps >= last):
                     if store is not None:
                         store.complete()
-                    return _chains(target, options, rounds, report)
+                    return replace(
+                        _chains(target, options, rounds, report), importance=accepted, refused=finish.refused
+                    )
                 started = time.perf_counter()
-                blocks = advance_all(states)
+                blocks = crew(states)
                 spent += time.perf_counter() - started
                 if store is not None:
                     store.append(blocks)

@@ -107,18 +107,18 @@ class StoppingReport:
         return f"Not converged after {self.steps} steps: " + "; ".join(self.missing) + "."
 
 
-def is_check(steps: int, block_steps: int) -> bool:
+def is_check(steps: int, block_steps: int, first: int = FIRST_CHECK) -> bool:
     """Whether the rule is applied after ``steps`` steps: at 200 and then each time the run is 30 % longer.
 
     The sequence is rounded up to whole blocks and depends on the number of steps alone, so that an interrupted run
     stops where an uninterrupted one does.
     """
-    return next_check(steps - 1, block_steps) == steps
+    return next_check(steps - 1, block_steps, first) == steps
 
 
-def next_check(steps: int, block_steps: int) -> int:
+def next_check(steps: int, block_steps: int, first: int = FIRST_CHECK) -> int:
     """Steps after which the rule is applied for the first time after ``steps``."""
-    check = FIRST_CHECK
+    check = first
     while (rounded := ceil(check / block_steps) * block_steps) <= steps:
         check = ceil(check * CHECK_GROWTH)
     return rounded

@@ -1,28 +1,35 @@
-"""Ensembles advanced in this process or shared out to several."""
+"""Ensembles advanced, or positions evaluated, in this process or shared out to several."""
 
 from __future__ import annotations
 
 import multiprocessing
 import pickle
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
+from skinbayes.arrays import FloatArray
 from skinbayes.errors import MachineError
-from skinbayes.sampling.advance import EnsembleState, EnsembleSteps, advance
+from skinbayes.sampling.advance import Density, EnsembleState, EnsembleSteps, advance
 from skinbayes.sampling.moves import MoveFactory
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.target import Target
 
-Advance: TypeAlias = Callable[[list[EnsembleState]], list[EnsembleSteps]]
-"""Moves every ensemble one block further."""
+Work: TypeAlias = EnsembleState | FloatArray
+"""An ensemble to be moved one block further, or positions ``(B, D)`` to be evaluated."""
+
+Done: TypeAlias = EnsembleSteps | FloatArray
+"""The block, or log-densities ``(B,)``."""
+
+Crew: TypeAlias = Callable[[Sequence[Work]], list[Any]]
+"""Does several pieces of work and returns what is done in their order."""
 
 
 @contextmanager
-def advancing(target: Target, options: SamplerOptions, moves: MoveFactory) -> Iterator[Advance]:
-    """Provide what moves all ensembles one block further, with ``options.cores`` processes.
+def working(target: Target, options: SamplerOptions, moves: MoveFactory) -> Iterator[Crew]:
+    """Provide what moves ensembles one block further and evaluates positions, with ``options.cores`` processes.
 
     Worker processes get the target once and end with this process, however it ends.
 
@@ -34,35 +41,35 @@ def advancing(target: Target, options: SamplerOptions, moves: MoveFactory) -> It
 
     Yields
     ------
-    a function of the states that returns the blocks in the same order
+    a function of several states or positions that returns the blocks or log-densities in the same order
     """
     count = min(options.cores, options.ensembles)
     if count == 1:
-        yield lambda states: [
-            advance(target, state, options.block_steps, options.vectorize, moves) for state in states
+        yield lambda pieces: [
+            _done(piece, target, options.block_steps, options.vectorize, moves) for piece in pieces
         ]
         return
     crew: list[_Worker] = []
     try:
         for _ in range(count):
             crew.append(_Worker((target, options.block_steps, options.vectorize, moves)))
-        yield lambda states: _share_out(crew, states)
+        yield lambda pieces: _share_out(crew, pieces)
     finally:
         for worker in crew:
             worker.stop()
 
 
 class _Worker:
-    """A process that advances ensembles; one that dies is started again, once, and gets the same ensemble.
+    """A process that does work; one that dies is started again, once, and gets the same work.
 
     Parameters
     ----------
-    task : arguments of :func:`advance` but for the state
+    task : target, steps of a block, how to evaluate, and moves
     """
 
     def __init__(self, task: tuple[Target, int, bool, MoveFactory]) -> None:
         self._task = task
-        self._state: tuple[int, EnsembleState] | None = None
+        self._piece: tuple[int, Work] | None = None
         self._died = False
         self._start()
 
@@ -78,25 +85,25 @@ class _Worker:
             self._process.start()
         there.close()
 
-    def send(self, index: int, state: EnsembleState) -> None:
-        """Give it an ensemble to advance."""
-        self._state = index, state
+    def send(self, index: int, piece: Work) -> None:
+        """Give it something to do."""
+        self._piece = index, piece
         try:
-            self.connection.send(self._state)
+            self.connection.send(self._piece)
         except OSError:
             self._again()
 
-    def receive(self) -> tuple[int, EnsembleSteps | Exception] | None:
-        """The number of the ensemble and its block; None if it died and begins anew."""
+    def receive(self) -> tuple[int, Done | Exception] | None:
+        """The number of the piece and what became of it; None if it died and begins anew."""
         try:
-            reply: tuple[int, EnsembleSteps | Exception] = self.connection.recv()
+            reply: tuple[int, Done | Exception] = self.connection.recv()
         except (EOFError, OSError):
             self._again()
             return None
         return reply
 
     def _again(self) -> None:
-        """Start the process once more, with the ensemble it was to advance: a block depends on its state alone."""
+        """Start the process once more, with what it had to do: what is done depends on the piece alone."""
         if self._died:
             raise MachineError(
                 "A worker process of the sampler died twice, perhaps for want of memory: fewer --cores need less. "
@@ -105,8 +112,8 @@ class _Worker:
         self._died = True
         self.stop()
         self._start()
-        if self._state is not None:
-            self.send(*self._state)
+        if self._piece is not None:
+            self.send(*self._piece)
 
     def stop(self) -> None:
         """End the process."""
@@ -129,19 +136,25 @@ def _interrupts_held_back() -> Iterator[None]:
 
 
 def _serve(connection: Connection, target: Target, steps: int, vectorize: bool, moves: MoveFactory) -> None:
-    """Advance ensembles as they are sent, until the other end closes."""
+    """Do work as it is sent, until the other end closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    reply: tuple[int, EnsembleSteps | Exception]
+    reply: tuple[int, Done | Exception]
     try:
         while True:
-            index, state = connection.recv()
+            index, piece = connection.recv()
             try:
-                reply = index, advance(target, state, steps, vectorize, moves)
+                reply = index, _done(piece, target, steps, vectorize, moves)
             except Exception as error:
                 reply = index, _portable(error)
             connection.send(reply)
     except (EOFError, OSError):
         return
+
+
+def _done(piece: Work, target: Target, steps: int, vectorize: bool, moves: MoveFactory) -> Done:
+    if isinstance(piece, EnsembleState):
+        return advance(target, piece, steps, vectorize, moves)
+    return Density(target, vectorize)(piece)
 
 
 def _portable(error: Exception) -> Exception:
@@ -152,10 +165,10 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[EnsembleSteps]:
-    """Give each free worker the next ensemble; which worker does what does not change the result."""
-    waiting = list(enumerate(states))[::-1]
-    blocks: dict[int, EnsembleSteps] = {}
+def _share_out(crew: list[_Worker], pieces: Sequence[Work]) -> list[Done]:
+    """Give each free worker the next piece; which worker does what does not change the result."""
+    waiting = list(enumerate(pieces))[::-1]
+    blocks: dict[int, Done] = {}
     busy = crew[: len(waiting)]
     for worker in busy:
         worker.send(*waiting.pop())
@@ -173,4 +186,4 @@ def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[Ensembl
                 worker.send(*waiting.pop())
             else:
                 busy.remove(worker)
-    return [blocks[index] for index in range(len(states))]
+    return [blocks[index] for index in range(len(pieces))]

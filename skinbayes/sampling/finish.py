@@ -1,0 +1,86 @@
+"""When ensembles have explored enough for importance sampling to be tried."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.sampling.convergence import rank_r_hat
+from skinbayes.sampling.importance import ImportanceDraws, importance_draws
+from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.stopping import is_check
+from skinbayes.sampling.target import Target
+from skinbayes.sampling.workers import Crew
+
+FIRST_ATTEMPT = 50
+"""Steps after which importance sampling is tried for the first time; then each time the run is 30 % longer."""
+
+AFTER_REFUSAL = 3
+"""Draws that were made and refused are not tried again before the run is so many times longer."""
+
+FOUND = 1.1
+"""Largest R-hat of the ensembles, over the later half of their steps, at which the posterior counts as found."""
+
+AT_A_TIME = 256
+"""Positions that a worker evaluates at a time; a fixed number, so that one seed gives the same with any number of workers."""
+
+
+class Finish:
+    """Tries importance sampling as the run grows.
+
+    Parameters
+    ----------
+    target, options : of the run
+
+    Attributes
+    ----------
+    refused : why draws were not accepted, the last time they were tried
+    """
+
+    def __init__(self, target: Target, options: SamplerOptions) -> None:
+        self._target, self._options = target, options
+        self._not_before = 0
+        self.refused = ""
+
+    def attempt(self, steps: int, joined: Callable[[str], FloatArray], crew: Crew) -> ImportanceDraws | None:
+        """Draws if they are due and accepted; what comes out depends on the seed, ``steps`` and the positions alone.
+
+        Parameters
+        ----------
+        steps : of each ensemble so far
+        joined : gives ``"positions"``, ``(ensembles, steps, walkers, D)``, and ``"log_density"``
+        crew : evaluates positions
+        """
+        options = self._options
+        due = options.importance and steps >= self._not_before and steps > 0
+        if not due or not is_check(steps, options.block_steps, FIRST_ATTEMPT):
+            return None
+        positions, log_density = (joined(name)[:, steps // 2 :] for name in ("positions", "log_density"))
+        ensembles, _, walkers, dimension = positions.shape
+        chains = positions.reshape(ensembles, -1, dimension)
+        apart = [rank_r_hat(chains[..., column]) for column in range(dimension)]
+        worst = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
+        if not apart[worst] <= FOUND:
+            self.refused = f"the ensembles do not agree yet about {self._target.names[worst]}"
+            return None
+        explored = ensembles * steps * walkers
+
+        def evaluate(new: FloatArray) -> FloatArray:
+            pieces = [new[first : first + AT_A_TIME] for first in range(0, len(new), AT_A_TIME)]
+            return np.concatenate(crew(pieces))
+
+        found = importance_draws(
+            chains,
+            log_density.reshape(ensembles, -1),
+            evaluate,
+            options.ess,
+            np.random.default_rng([options.seed, 8, steps]),
+            explored,
+        )
+        if isinstance(found, ImportanceDraws):
+            return found
+        self.refused, tried = found
+        self._not_before = AFTER_REFUSAL * steps if tried > explored / 4 else 0
+        return None
