@@ -111,7 +111,7 @@ def importance_draws(
     for _ in range(ROUNDS):
         rounds.draw(mixture.with_wide_component(WIDE_WEIGHT, WIDE_STRETCH), size, evaluate, rng)
         before, gain = gain, effective_number(rounds.log_ratios()) / rounds.count
-        mixture = mixture.refitted(rounds.positions, rounds.capped_weights())
+        mixture = rounds.improved(mixture, rng)
         if gain < 1.1 * before:
             break
     if gain < WORTHWHILE:
@@ -131,7 +131,7 @@ def importance_draws(
         if not against:
             return found
         rounds.add(positions, density, proposal)
-        mixture = mixture.refitted(rounds.positions, rounds.capped_weights())
+        mixture = rounds.improved(mixture, rng)
     return against[0], rounds.count
 
 
@@ -164,11 +164,16 @@ class _Rounds:
         mixture = StudentMixture.of(self._proposals, self._counts)
         return np.asarray(self._density - mixture.log_density(self.positions))
 
-    def capped_weights(self) -> FloatArray:
-        """Weights, the largest capped: those that rest on a few draws would teach a mixture those draws only."""
+    def improved(self, mixture: StudentMixture, rng: np.random.Generator) -> StudentMixture:
+        """The mixture fitted anew to some of the draws."""
         log_ratios = self.log_ratios()
         weights = np.exp(log_ratios - log_ratios.max())
-        return np.asarray(np.minimum(weights, weights.sum() / np.sqrt(self.count)))
+        # draws with weights far above the others would teach the mixture themselves only
+        weights = np.minimum(weights, weights.sum() / np.sqrt(self.count))
+        if self.count <= 2 * POINTS:
+            return mixture.refitted(self.positions, weights)
+        chosen = rng.choice(self.count, size=2 * POINTS, p=weights / weights.sum())
+        return mixture.refitted(self.positions[chosen], np.ones(chosen.size))
 
 
 def _weighed(

@@ -158,7 +158,7 @@ class StudentMixture:
 
 
 def fit_mixture(
-    x: FloatArray, held_out: FloatArray, rng: np.random.Generator, most: int = 8
+    x: FloatArray, held_out: FloatArray, rng: np.random.Generator, most: int = 16
 ) -> StudentMixture:
     """Fit mixtures of 1, 2, 4, … components to points, and take the one under which other points are likeliest.
 
