@@ -129,13 +129,13 @@ def test_stress_variance_is_integrated_once_for_rows_of_equal_skin(
     from skinbayes.forward import contact_inputs
 
     asked: list[tuple[int, ...]] = []
-    integral = contact_inputs.twice_stress_variance
+    integral = contact_inputs.integrated
 
     def watched(spectrum: object, skin: object) -> np.ndarray:
         asked.append(np.shape(skin.young_modulus_layer))  # type: ignore[attr-defined]
         return integral(spectrum, skin)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(contact_inputs, "twice_stress_variance", watched)
+    monkeypatch.setattr(contact_inputs, "integrated", watched)
     problem.log_likelihood(vectors(problem, 3))
     assert asked == [(3, 2)]
 
