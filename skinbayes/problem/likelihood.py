@@ -135,12 +135,12 @@ class Likelihood:
         return np.where(np.isnan(predicted[0]).any(axis=-1), np.nan, density)
 
     def _pointwise(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
-        density = np.concatenate(
-            [self._of_each(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)],
-            axis=-1,
-        )
         # NaN where the forward model has no answer: samplers count those apart from data that are impossible
-        return np.where(np.isnan(np.concatenate(predicted, axis=-1)), np.nan, density)
+        each = [
+            np.where(np.isnan(f), np.nan, self._of_each(o, inputs, f))
+            for o, f in zip(self._observations, predicted, strict=True)
+        ]
+        return np.concatenate(each, axis=-1) if len(each) > 1 else each[0]
 
     def _left_out(self, theta: FloatArray, block: NDArray[np.intp], count: int) -> FloatArray:
         groups = self.problem.groups

@@ -232,7 +232,8 @@ class SelfAffineSpectrum:
         axes = 0 if wavevector is None else 1
         q_r = with_axes(self.wavevector_rolloff, axes)
         form, (place, measure, slopes) = self._form()
-        _, fourth_power, first, last, slope = (with_axes(part, axes) for part in form)
+        parts = [with_axes(part, axes) for part in form] if axes else form
+        _, fourth_power, first, last, slope = parts
         # everything in ln(q/q_r)
         top = last if wavevector is None else np.minimum(np.maximum(np.log(wavevector / q_r), first), last)
         end = np.maximum(np.minimum(top, np.log(with_axes(saturation, axes) / q_r)), first)
