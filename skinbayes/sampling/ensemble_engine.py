@@ -45,7 +45,7 @@ class EnsembleEngine:
             return _weighted(chains, chains.importance)
         positions, log_density = chains.draws(DRAWS_PER_CHAIN)
         words = verdict(chains, target, options)
-        evidence = _evidence(chains, target, options) if chains.converged else None
+        evidence = _evidence(chains, target, options) if options.importance and chains.converged else None
         return Draws(positions, None, evidence, _diagnostics(chains, words), log_density)
 
 

@@ -1,8 +1,8 @@
 """The evidence, ln of the integral of prior times likelihood, from draws of the posterior and of a proposal that resembles it.
 
 Bridge sampling (Meng & Wong 1996, Statistica Sinica 6, 831), with the errors of Frühwirth-Schnatter (2004, doi
-10.1111/j.1368-423X.2004.00125.x). Where the proposal is close to the posterior it is hardly better than plain importance sampling,
-which is the check: the two share the draws of the proposal, but weigh its tails differently.
+10.1111/j.1368-423X.2004.00125.x). Where the proposal is close to the posterior it is hardly better than plain importance
+sampling, which is the check: the two share the draws of the proposal, but weigh its tails differently.
 """
 
 from __future__ import annotations

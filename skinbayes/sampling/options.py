@@ -63,15 +63,16 @@ class SamplerOptions(EngineOptions):
     ----------
     ensembles : number of independent ensembles; they are the chains of R-hat, and what ``cores`` share
     walkers : walkers of each ensemble, even and at least twice the dimension; None is
-        :data:`DEFAULT_WALKERS` (:data:`FEWER_WALKERS` if ``expensive``, :data:`EXPLORING_WALKERS` with ``importance``) or four times the dimension, whichever is larger
+        :data:`DEFAULT_WALKERS` or four times the dimension, whichever is larger; in place of the first
+        :data:`FEWER_WALKERS` if ``expensive``, :data:`EXPLORING_WALKERS` with ``importance``
     r_hat : largest acceptable rank-normalised split R-hat between ensembles
     steps_over_tau : kept steps, summed over the ensembles, must reach this many autocorrelation times
     max_steps : steps of each ensemble after which the run ends, converged or not (a total: resuming does not add)
     block_steps : steps between two writes to the store; None is :data:`BLOCK_STEPS` (:data:`EXPLORING_BLOCK_STEPS` with
         ``importance``)
     vectorize : evaluate half an ensemble in one call, else walker by walker
-    importance : let the walkers only find the posterior, and draw from it by importance sampling (see
-        ``skinbayes.sampling.importance``) as soon as that is accepted; None does so if ``expensive``
+    importance : let the walkers only find the posterior, and draw from it by importance sampling as soon as that is accepted
+        (see ``skinbayes.sampling.importance``); also gives ln of the evidence
 
     Examples
     --------
@@ -88,12 +89,10 @@ class SamplerOptions(EngineOptions):
     max_steps: int = 10_000
     block_steps: int = None  # type: ignore[assignment]  # filled in below
     vectorize: bool = True
-    importance: bool | None = None
+    importance: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.importance is None:
-            object.__setattr__(self, "importance", self.expensive)
         if self.block_steps is None:
             object.__setattr__(self, "block_steps", EXPLORING_BLOCK_STEPS if self.importance else BLOCK_STEPS)
         whole("ensembles", self.ensembles, 2)
@@ -113,8 +112,8 @@ class SamplerOptions(EngineOptions):
     def walkers_for(self, dimension: int) -> int:
         """Walkers of each ensemble for a target of ``dimension`` coordinates; InputError if too few were asked for."""
         if self.walkers is None:
-            few = EXPLORING_WALKERS if self.importance else FEWER_WALKERS
-            return max(few if self.expensive or self.importance else DEFAULT_WALKERS, 4 * dimension)
+            usual = FEWER_WALKERS if self.expensive else DEFAULT_WALKERS
+            return max(EXPLORING_WALKERS if self.importance else usual, 4 * dimension)
         if self.walkers < 2 * dimension:
             raise InputError(
                 f"sampler option walkers: {self.walkers} found, at least {2 * dimension} expected "
