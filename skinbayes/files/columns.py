@@ -88,6 +88,8 @@ def _found(cell: str, unit: str, value: float, quantity: Quantity) -> tuple[str,
         what = "an empty cell" if cell == "" else f"{quoted(cell)} (a missing value)"
         return "missing", f"found {what}; {expected}. {LEAVE_OUT}"
     if advice := comma_advice(cell):
+        if "." in cell and "," in cell[cell.rfind(".") :]:  # other cells had decimal commas, perhaps
+            advice += f" ({cell.replace('.', '')} where the file has decimal commas)"
         return "comma", f"found {quoted(cell, _LONGEST_SHOWN)}, {advice}; {expected}"
     if value != value:
         return "text", f"found {quoted(cell, _LONGEST_SHOWN)}, which is not a number; {expected}"

@@ -192,23 +192,24 @@ def with_points(
         stand between thousands
     """
     numeric = {i for i, name in enumerate(header) if "[" in name}
-    seen: dict[tuple[str, bool], str] = {}
+    seen: dict[tuple[str, bool], tuple[str, str]] = {}
     for line, row in zip(lines, rows, strict=True):
         for i in numeric:
             cell = row[i].strip()
             if ("," in cell or "." in cell) and (fraction := _FRACTION.fullmatch(cell)):
                 thousand = _THOUSAND.fullmatch(cell) is not None
-                seen.setdefault((fraction["mark"], thousand), f"'{cell[:20]}' (line {line})")
+                seen.setdefault((fraction["mark"], thousand), (cell[:20], f"'{cell[:20]}' (line {line})"))
     comma, point = (seen.get((mark, False)) or seen.get((mark, True)) for mark in ",.")
+    number = point[0] if point and (".", False) not in seen else ""  # whose point may stand between thousands
     if separator != "," and comma and point:
+        way_out = f": {number.replace('.', '')}, or {number.replace('.', ',')} if it is decimal" if number else ""
         raise InputError(
-            f"{path}: found {comma} and {point}; expected one decimal separator in all numbers of a file, and none between "
-            "thousands"
+            f"{path}: found {comma[1]} and {point[1]}; expected one decimal separator in all numbers of a file, and none "
+            f"between thousands{way_out}"
         )
-    if separator == ";" and point and (".", False) not in seen:
-        number = point[1 : point.index("'", 1)]
+    if separator == ";" and point and number:
         raise InputError(
-            f"{path}: found {point} between semicolons, where a point may stand before decimals or between thousands; write "
+            f"{path}: found {point[1]} between semicolons, where a point may stand before decimals or between thousands; write "
             f"{number}0 if it is decimal, {number.replace('.', '')} if it is a thousand's"
         )
     if point or (",", False) not in seen:

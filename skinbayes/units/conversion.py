@@ -24,6 +24,7 @@ from skinbayes.units.unit_words import UnknownUnit, canonical_unit, nearest_unit
 _NUMBER = re.compile(
     r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf(?:inity)?(?![a-z])", re.IGNORECASE
 )
+_WRITTEN = re.compile(r"[+-]?[0-9.,](?:[0-9.,'’\s]*[0-9])?(?:[eE][+-]?[0-9]+)?")  # with what may stand between digits
 _HEADER = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 
 _MEANING = {
@@ -247,7 +248,7 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str, differenc
     spelled_infinite = "inf" in match.group().lower()
     if not isfinite(number) and not (spelled_infinite and number > 0):
         raise InputError(f"{where}: {text[:80]!r} is not a number that can be used; {expected}")
-    if advice := comma_advice(re.split(r"\s+(?=[^\s0-9,.])", text, maxsplit=1)[0]):
+    if (written := _WRITTEN.match(text)) and (advice := comma_advice(written[0])):
         raise InputError(f"{where}: {text[:80]!r} has {advice}; {expected}")
     if not unit_text:
         if number == inf or unit == "1":

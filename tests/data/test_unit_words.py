@@ -161,11 +161,15 @@ def test_says_what_may_have_been_meant(text: str, unit: str, advice: str) -> Non
         ("1'000", "separated thousands; write 1000"),
         ("1.000,5", "separated thousands; write 1000.5"),
         ("1,000.5", "separated thousands; write 1000.5"),
+        ("1.234.567,8", "separated thousands; write 1234567.8"),
+        ("1.234.567", "separated thousands; write 1234567"),
+        ("1 234,5", "separated thousands; write 1234.5"),
     ],
 )
-def test_commas_and_thousands(number: str, advice: str) -> None:
+@pytest.mark.parametrize("blank", [" ", ""])
+def test_commas_and_thousands(number: str, advice: str, blank: str) -> None:
     with pytest.raises(InputError) as caught:
-        parse_quantity(f"{number} mN", "N", where="x")
+        parse_quantity(f"{number}{blank}mN", "N", where="x")
     assert advice in str(caught.value)
 
 
