@@ -41,7 +41,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
     "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "statistics", "diagnose", "files", "forward", "version"},
-    "fit": {*WORDS, *FILES, "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
+    "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
