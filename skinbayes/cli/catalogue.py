@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, print_text, say
+from skinbayes.cli.options import json_option
+from skinbayes.cli.output import print_json, print_sentences, print_table, print_text, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:

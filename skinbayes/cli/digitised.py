@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, say
+from skinbayes.cli.options import json_option, named_values
+from skinbayes.cli.output import print_json, print_sentences, print_table, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def digitised(
     target, described_in = _targets(output)
     if target.exists() and target.samefile(export.path):
         raise InputError(f"{target}: this is the export itself; expected another file to write")
-    constants = _constants(pairs)
+    constants = named_values("--constant", pairs, 'sphere_radius="8 mm"')
     table = digitised_table(
         sets,
         meanings,
@@ -203,20 +204,6 @@ def _targets(output: str) -> tuple[Path, Path]:
         path = path / "data.csv"
     name = "provenance.toml" if path.name == "data.csv" else f"{path.stem}.provenance.toml"
     return path, path.with_name(name)
-
-
-def _constants(pairs: tuple[str, ...]) -> dict[str, str]:
-    constants: dict[str, str] = {}
-    for pair in pairs:
-        name, equals, value = (part.strip() for part in pair.partition("="))
-        if not equals or not name or not value:
-            raise InputError(
-                f'--constant {pair[:80]}: expected NAME=VALUE, for example --constant sphere_radius="8 mm"'
-            )
-        if name in constants:
-            raise InputError(f"--constant {name}: set twice")
-        constants[name] = value
-    return constants
 
 
 def _loads(target: Path) -> str:

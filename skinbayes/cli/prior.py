@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
+from skinbayes.cli.options import data_option, json_option, model_argument, seed_option
+from skinbayes.cli.output import print_json, print_sentences, print_table
 
 MOST_ROWS = 200
 """Longest table: of more data those are listed that the priors expect least."""
 
 
 @click.command()
-@click.argument("model")
-@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(0), help="Seed of the draws.")
+@model_argument
+@data_option
+@seed_option("Seed of the draws.")
 @click.option(
     "--draws",
     default=4000,

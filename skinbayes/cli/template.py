@@ -7,11 +7,12 @@ from pathlib import Path
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json, say
+from skinbayes.cli.options import json_option, model_argument
+from skinbayes.cli.output import print_json, say
 
 
 @click.command()
-@click.argument("model")
+@model_argument
 @click.option("-o", "--output", metavar="FILE.csv", help="CSV to write; without it the header is printed.")
 @click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
 @json_option

@@ -202,7 +202,9 @@ def with_points(
     comma, point = (seen.get((mark, False)) or seen.get((mark, True)) for mark in ",.")
     number = point[0] if point and (".", False) not in seen else ""  # whose point may stand between thousands
     if separator != "," and comma and point:
-        way_out = f": {number.replace('.', '')}, or {number.replace('.', ',')} if it is decimal" if number else ""
+        way_out = (
+            f": {number.replace('.', '')}, or {number.replace('.', ',')} if it is decimal" if number else ""
+        )
         raise InputError(
             f"{path}: found {comma[1]} and {point[1]}; expected one decimal separator in all numbers of a file, and none "
             f"between thousands{way_out}"

@@ -24,7 +24,9 @@ from skinbayes.units.unit_words import UnknownUnit, canonical_unit, nearest_unit
 _NUMBER = re.compile(
     r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf(?:inity)?(?![a-z])", re.IGNORECASE
 )
-_WRITTEN = re.compile(r"[+-]?[0-9.,](?:[0-9.,'’\s]*[0-9])?(?:[eE][+-]?[0-9]+)?")  # with what may stand between digits
+_WRITTEN = re.compile(
+    r"[+-]?[0-9.,](?:[0-9.,'’\s]*[0-9])?(?:[eE][+-]?[0-9]+)?"
+)  # with what may stand between digits
 _HEADER = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 
 _MEANING = {
