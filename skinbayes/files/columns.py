@@ -14,12 +14,11 @@ from skinbayes import vocabulary
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.table import CsvTable, Problems, quoted
-from skinbayes.units import comma_advice, convert_array, describe_unit, is_unit, split_header
+from skinbayes.units import NUMBER, comma_advice, convert_array, describe_unit, is_unit, split_header
 from skinbayes.vocabulary import Quantity
 
 LabelArray = NDArray[np.str_]
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _NUMERIC = re.compile(r"[+-]?[0-9.,]*[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?")
 _INFINITE = re.compile(r"[+-]?inf(?:inity)?", re.IGNORECASE)
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "missing"})
@@ -56,7 +55,7 @@ def read_quantity(
     missing : whether cells without a value are problems, or kept as NaN; None where a model file cannot drop their rows
     """
     cells = table.column(position)
-    written = np.array([_number(cell) for cell in cells])
+    written = np.array([number_in(cell) for cell in cells])
     where = f"{table.header_place}, column '{table.header[position].strip()}'"
     values = convert_array(written, unit, quantity.unit, where, difference=difference)
     if quantity.admits(values.min()) and quantity.admits(values.max()):  # the range has no gaps; nan fails
@@ -73,8 +72,9 @@ def _is_missing(cell: str) -> bool:
     return cell.lower() in _MISSING
 
 
-def _number(cell: str) -> float:
-    if _NUMBER.fullmatch(cell):
+def number_in(cell: str) -> float:
+    """The number in a cell, NaN if there is none."""
+    if NUMBER.fullmatch(cell):
         return float(cell)
     if _INFINITE.fullmatch(cell):
         return -inf if cell.startswith("-") else inf
@@ -166,7 +166,7 @@ def read_columns(
         if unit is None:
             columns[name] = read_labels(table, position, name, problems, missing)
         elif quantity is None:
-            columns[name] = np.array([_number(cell) for cell in table.column(position)])
+            columns[name] = np.array([number_in(cell) for cell in table.column(position)])
             units[name] = unit
         else:
             spread = vocabulary.spread_of(name) is not None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +12,12 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import find_dataset
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
 from skinbayes.files.table import quoted, read_table
+from skinbayes.units import NUMBER
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 Cell = str | float | None
-
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +89,6 @@ def load_reference(name_or_path: str | Path) -> ReferenceTable:
 
 
 def _cells(column: list[str]) -> list[Cell]:
-    if all(cell == "" or _NUMBER.fullmatch(cell) for cell in column):
+    if all(cell == "" or NUMBER.fullmatch(cell) for cell in column):
         return [float(cell) if cell else None for cell in column]
     return [cell or None for cell in column]

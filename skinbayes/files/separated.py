@@ -93,7 +93,7 @@ def numbered_lines(text: str, path: Path) -> Iterator[tuple[int, str]]:
 
 
 class Records:
-    """Rows of separated text with the numbers of their first lines; comments and empty lines between them are left out.
+    """Rows of separated text with the numbers of their first lines; empty lines, and comments if there are any, are left out.
 
     Attributes
     ----------
@@ -102,12 +102,12 @@ class Records:
     comment : the last comment
     """
 
-    def __init__(self, text: str, path: Path, separator: str = "") -> None:
+    def __init__(self, text: str, path: Path, separator: str = "", comments: bool = True) -> None:
         self.separator = separator or _separator(text, path)
         self.header: tuple[str, ...] = ()
         self.comment = ""
         self._path, self._lines = path, numbered_lines(text, path)
-        self._first, self._inside = 0, False
+        self._first, self._inside, self._comments = 0, False, comments
         self._reader = csv.reader(self._feed(), **self._dialect())
 
     def __iter__(self) -> Records:
@@ -132,7 +132,7 @@ class Records:
             if not self._inside:
                 if not line.strip() or (number == 1 and _STATED.fullmatch(line)):
                     continue
-                if line.lstrip().startswith("#") and not self._may_be_row(line):
+                if self._comments and line.lstrip().startswith("#") and not self._may_be_row(line):
                     self.comment = line
                     continue
                 self._first, self._inside = number, True

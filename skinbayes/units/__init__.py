@@ -8,10 +8,11 @@ from skinbayes.units.conversion import (
     split_header,
 )
 from skinbayes.units.format import format_quantity
-from skinbayes.units.numbers import comma_advice
+from skinbayes.units.numbers import NUMBER, comma_advice
 from skinbayes.units.unit_words import is_unit, unit_table
 
 __all__ = [
+    "NUMBER",
     "comma_advice",
     "convert_array",
     "describe_unit",

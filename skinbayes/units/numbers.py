@@ -6,6 +6,9 @@ import re
 from math import isnan
 from numbers import Real
 
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""A number as it is read: with a decimal point."""
+
 _THOUSANDS = re.compile(
     r"(?P<whole>[+-]?[1-9][0-9]{0,2}(?P<mark>[.,'’  \u00a0\u2009\u202f])[0-9]{3}(?:(?P=mark)[0-9]{3})*)"
     r"(?P<decimals>(?!(?P=mark))[.,][0-9]+)?(?P<power>[eE][+-]?[0-9]+)?"
