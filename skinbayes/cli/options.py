@@ -14,6 +14,7 @@ data_option = click.option("--data", metavar="FILE.csv", help="Your own data ins
 set_option = click.option(
     "--set", "pairs", multiple=True, metavar="NAME=VALUE", help="Fix a parameter or condition, with its unit."
 )
+overwrite_option = click.option("--overwrite", is_flag=True, help="Overwrite the file if it exists.")
 json_option = click.option(
     "--json",
     "as_json",

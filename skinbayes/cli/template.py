@@ -7,14 +7,14 @@ from pathlib import Path
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.options import json_option, model_argument
+from skinbayes.cli.options import json_option, model_argument, overwrite_option
 from skinbayes.cli.output import print_json, say
 
 
 @click.command()
 @model_argument
 @click.option("-o", "--output", metavar="FILE.csv", help="CSV to write; without it the header is printed.")
-@click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
+@overwrite_option
 @json_option
 def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> None:
     """Write the header of a CSV that the data of a model need.

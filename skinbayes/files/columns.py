@@ -28,7 +28,7 @@ DROP = 'or write missing = "drop" under [data] of the model file'
 
 Missing = Literal["refuse", "keep"]
 
-_LONGEST_LABEL = 200
+LONGEST_LABEL = 200
 _LONGEST_SHOWN = 20
 """Characters of a cell that a message quotes."""
 
@@ -111,12 +111,12 @@ def read_labels(
     for row, cell in enumerate(cells):
         if cell == "" and (missing == "keep" or name not in vocabulary.LABELS):
             continue  # a model that uses the column asks for values
-        if cell == "" or len(cell) > _LONGEST_LABEL or not cell.isprintable():
+        if cell == "" or len(cell) > LONGEST_LABEL or not cell.isprintable():
             found = "an empty cell" if cell == "" else quoted(cell, _LONGEST_SHOWN)
             problems.add(
                 table.lines[row],
                 position,
-                f", column '{name}': found {found}; expected 1 to {_LONGEST_LABEL} printable characters"
+                f", column '{name}': found {found}; expected 1 to {LONGEST_LABEL} printable characters"
                 + (f". {LEAVE_OUT}, {DROP}" if cell == "" else ""),
                 "label",
             )
@@ -228,7 +228,7 @@ def _identify(header: str, cells: list[str]) -> tuple[str, Quantity | None, str 
         unit = unit or "1"
     if name == "":
         raise InputError("a column without a name; give it one, or remove it")
-    if not header.isprintable() or len(header) > _LONGEST_LABEL:
+    if not header.isprintable() or len(header) > LONGEST_LABEL:
         raise InputError(f"column {quoted(header, _LONGEST_SHOWN)}: expected a name of printable characters")
     if name in vocabulary.LABELS and unit is not None:
         raise InputError(f"column '{name}' holds labels; expected no unit, found '[{unit[:40]}]'")
@@ -282,16 +282,13 @@ def _guess(name: str, unit: str | None) -> str:
     known = known_names()
     for base, apart in _split_units(name):
         for match, _ in vocabulary.meant(base, known):
-            quantity = vocabulary.lookup(match)
-            written = unit or apart
-            if quantity is None or not (written and _converts(written, quantity.unit)):
-                continue
-            where = "" if unit else ", with the unit in square brackets"
-            return f"{vocabulary.suggestions(base, known)} Write '{match} [{written}]'{where}"
-    said = _meant(name)
+            quantity, written = vocabulary.lookup(match), unit or apart
+            if quantity is not None and written and _converts(written, quantity.unit):
+                where = "" if unit else ", with the unit in square brackets"
+                return f"{vocabulary.suggestions(base, known)} Write '{match} [{written}]'{where}"
     found = vocabulary.meant(name, known)
-    quantity = vocabulary.lookup(found[0][0]) if len(found) == 1 else None
-    return f"{said} Write '{quantity.name} [{quantity.unit}]'" if quantity is not None and not unit else said
+    quantity = vocabulary.lookup(found[0][0]) if len(found) == 1 and not unit else None
+    return _meant(name) + ("" if quantity is None else f" Write '{quantity.name} [{quantity.unit}]'")
 
 
 def _split_units(name: str) -> list[tuple[str, str]]:

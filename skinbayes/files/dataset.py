@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import compress
@@ -23,7 +21,7 @@ from skinbayes.files.columns import DROP, LEAVE_OUT, LabelArray, Missing, read_c
 from skinbayes.files.given_columns import table_of_columns
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
-from skinbayes.files.table import Problems, quoted, read_table
+from skinbayes.files.table import Problems, csv_text, quoted, read_table
 from skinbayes.plugins import installed_forward_models
 
 if TYPE_CHECKING:
@@ -112,28 +110,36 @@ class Dataset:
 
     def to_csv(self) -> str:
         """The columns as a CSV in SI; read again, it has the same :attr:`fingerprint`."""
-        text = io.StringIO()
-        # quotes about headers, so that a semicolon in a name is not taken for what separates cells
-        odd = any(mark in name for name in self.columns for mark in ";\t")
-        writer = csv.writer(text, lineterminator="\n")
-        heading = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_ALL if odd else csv.QUOTE_MINIMAL)
-        heading.writerow(
-            [f"{name} [{self.units[name]}]" if name in self.units else name for name in self.columns]
-        )
-        cells = [
-            [
-                "" if value != value else repr(value) if name in self.units else value
-                for value in values.tolist()
-            ]
+        cells = {
+            name: [repr(v) if v == v else "" for v in values.tolist()]
+            if name in self.units
+            else values.tolist()
             for name, values in self.columns.items()
-        ]
-        writer.writerows(zip(*cells, strict=True))
-        return text.getvalue()
+        }
+        return csv_text(cells, self.units)
 
     @property
     def shown(self) -> str:
         """What people know it by: a folder with provenance by its key, a file by its own name."""
         return self.path.name if self.path.stem == self.key else self.key
+
+    @property
+    def row_word(self) -> str:
+        """What :attr:`lines` count: ``"line"`` of a file, or ``"row"``."""
+        return "row" if self.in_memory or not self.lines else "line"
+
+    def place(self, row: int) -> str:
+        """Where a row stands, for messages; ``row`` counts from 0."""
+        return f"{self.path}, {self.row_word} {self.lines[row] if self.lines else row + 1}"
+
+    def positive(self, column: str, why: str) -> FloatArray:
+        """A numeric column, shape (n_rows,); :class:`InputError` with the row and the reason unless all values are > 0."""
+        values = np.asarray(self.columns[column], dtype=float)
+        for row in np.flatnonzero(~(values > 0)).tolist():
+            raise InputError(
+                f"{self.place(row)}, {column}: found {values[row]:g}; expected a value > 0, as {why}"
+            )
+        return values
 
     @property
     def n_rows(self) -> int:
@@ -220,7 +226,7 @@ class Dataset:
         if keep.all():
             return self
         lines = self.lines or tuple(range(1, self.n_rows + 1))
-        problems = Problems(self.path, "row" if self.in_memory or not self.lines else "line")
+        problems = Problems(self.path, self.row_word)
         for position, (name, missing) in enumerate(empty.items()):
             for row in np.flatnonzero(missing).tolist():
                 problems.add(

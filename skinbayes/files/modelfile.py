@@ -160,12 +160,16 @@ def read_model(content: Mapping[str, Any], path: Path, text: str) -> ModelSpec:
 
 
 def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
-    parameters = _read_parameters(block.parameters, where)
-    data, noise = block.data, block.noise
+    data, surface, rheology = block.data, block.surface, block.rheology
     families: dict[str, str] = {}
     noise_parameters: tuple[ParameterSpec, ...] = ()
-    if data is not None and noise is not None:
-        families, noise_parameters = read_noise(noise, data.names(), data.observables is not None, where)
+    of_data: dict[str, Any] = {}
+    if data is not None and block.noise is not None:
+        names, several = data.names(), data.observables is not None
+        families, noise_parameters = read_noise(block.noise, names, several, where)
+        rows = {key: tuple(levels) for key, levels in data.rows.items()}
+        of_data = data.model_dump(include={"spread", "input_spread", "missing"})
+        of_data |= {"observables": tuple(names), "rows": rows}
     covariates, exponents = read_covariates(block.covariates, where)
 
     def resolved(table: DataBlock | RheologyBlock | None) -> str | None:
@@ -173,13 +177,8 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
             return None if table is None else table.dataset
         return str((path.parent / table.file).resolve())
 
-    rheology = block.rheology
     if rheology is not None:
         label_column(rheology.by, where("rheology", "by"))
-    surface = block.surface
-    surface_file = None
-    if surface is not None and surface.file is not None:
-        surface_file = (path.parent / surface.file).resolve()
     return ModelSpec(
         name=path.stem,
         path=path,
@@ -188,15 +187,12 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         description=block.description.strip(),
         forward=block.forward,
         options=block.options,
-        parameters=parameters,
+        parameters=_read_parameters(block.parameters, where),
         dataset=resolved(data),
-        rows={} if data is None else {key: tuple(levels) for key, levels in data.rows.items()},
-        observables=() if data is None else tuple(data.names()),
-        spread=None if data is None else data.spread,
-        input_spread=None if data is None else data.input_spread,
-        missing=None if data is None else data.missing,
         surface_name=None if surface is None else surface.name,
-        surface_file=surface_file,
+        surface_file=None
+        if surface is None or surface.file is None
+        else (path.parent / surface.file).resolve(),
         noise=families,
         noise_parameters=noise_parameters,
         groups=read_groups(block.groups, families, where),
@@ -209,6 +205,7 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
             key: _read_grid(key, grid, where("conditions", key)) for key, grid in block.conditions.items()
         },
         baseline_models=_read_baseline_models(block, path, where("baseline_models")),
+        **of_data,
     )
 
 

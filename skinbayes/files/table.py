@@ -5,7 +5,10 @@ Nothing here knows quantities; it makes sure that what comes out is a rectangula
 
 from __future__ import annotations
 
+import csv
 import hashlib
+import io
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -96,6 +99,17 @@ class CsvTable:
 def quoted(text: str, longest: int = 40) -> str:
     """Text of a file inside a message: quoted, shortened, without control characters."""
     return repr(text if len(text) <= longest else text[: longest - 3] + "...")
+
+
+def csv_text(columns: Mapping[str, Sequence[str]], units: Mapping[str, str]) -> str:
+    """Columns of text as a CSV that `read_table` reads, with the unit of each that has one in its header."""
+    text = io.StringIO()
+    # quotes about headers, so that a semicolon in a name is not taken for what separates cells
+    odd = any(mark in name for name in columns for mark in ";\t")
+    heading = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_ALL if odd else csv.QUOTE_MINIMAL)
+    heading.writerow([f"{name} [{units[name]}]" if name in units else name for name in columns])
+    csv.writer(text, lineterminator="\n").writerows(zip(*columns.values(), strict=True))
+    return text.getvalue()
 
 
 def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | None = None) -> CsvTable:

@@ -55,7 +55,7 @@ class StatisticalModel(BoundModel):
             The model has no data, or ``theta`` has the wrong number of parameters.
         """
         batch, single = self._batch(theta)
-        value = self._likelihood.pointwise(batch) if pointwise else self._likelihood.total(batch)
+        value = self.likelihood.pointwise(batch) if pointwise else self.likelihood.total(batch)
         return unbatch(impossible(value), single)
 
     def log_likelihood_left_out(self, theta: ArrayLike, column: str) -> FloatArray:
@@ -69,7 +69,7 @@ class StatisticalModel(BoundModel):
             The model has no data, several observables, or no such column.
         """
         batch, single = self._batch(theta)
-        return unbatch(impossible(self._likelihood.left_out(batch, column)), single)
+        return unbatch(impossible(self.likelihood.left_out(batch, column)), single)
 
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
         """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
@@ -90,7 +90,7 @@ class StatisticalModel(BoundModel):
 
     def data_likelihood(self) -> LogLikelihood:
         """The likelihood: it stays as it is when coordinates change; NaN where the forward model has no answer."""
-        return LogLikelihood(self._likelihood.total)
+        return LogLikelihood(self.likelihood.total)
 
     # -- prior draws, checks, sampling -------------------------------------------------------------------------------
 
@@ -110,7 +110,7 @@ class StatisticalModel(BoundModel):
         Group effects are drawn anew, for other people and liquids, unless ``effects`` ``(B, G)`` are given.
         """
         batch, single = self._batch(theta)
-        return unbatch(self._likelihood.draw(batch, rng, effects), single)
+        return unbatch(self.likelihood.draw(batch, rng, effects), single)
 
     def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
         """Draw the effects of all levels of all groups given parameters and data, shape ``(B, G)``.
@@ -118,7 +118,7 @@ class StatisticalModel(BoundModel):
         Raises :class:`InputError` if the model has no groups.
         """
         batch, _ = self._batch(theta)
-        return self._likelihood.draw_effects(batch, rng)
+        return self.likelihood.draw_effects(batch, rng)
 
     def noise_width(self, theta: FloatArray) -> FloatArray:
         """Width of the noise of each datum at one parameter vector ``(D,)``, shape ``(M,)``.
@@ -126,7 +126,7 @@ class StatisticalModel(BoundModel):
         In the unit of the observable; for logarithmic noise families the width of its ln. Group effects are not in it.
         """
         batch, _ = self._batch(theta)
-        return self._likelihood.width(batch)[0]
+        return self.likelihood.width(batch)[0]
 
     def independent_scatter(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
         """Changes of what scatters as numbers that scatter independently, with width 1.
@@ -142,7 +142,7 @@ class StatisticalModel(BoundModel):
             Shape ``(B, M + G)`` with G effects of groups: the inner products are those of the changes with the inverse of the
             covariance of the data between them.
         """
-        return self._likelihood.independent(theta, changes)
+        return self.likelihood.independent(theta, changes)
 
     @property
     def noise_is_logarithmic(self) -> NDArray[np.bool_]:
@@ -163,5 +163,6 @@ class StatisticalModel(BoundModel):
         return self._prior.times(self.data_likelihood())
 
     @cached_property
-    def _likelihood(self) -> Likelihood:
+    def likelihood(self) -> Likelihood:
+        """What the densities and draws of data are made of, for batches ``(B, D)`` without checks of their shape."""
         return Likelihood(self)
