@@ -31,6 +31,9 @@ EXIT_NOT_CONVERGED = 3
 EXIT_MACHINE = 4
 EXIT_INTERRUPTED = 130
 
+MOST_ROWS = 200
+"""Longest table of rows; of more the first, or the most telling, are listed."""
+
 LONGEST_CELL = 500
 """Characters of a cell of a table that are printed."""
 

@@ -7,11 +7,8 @@ from typing import Any
 import click
 
 from skinbayes.cli.options import json_option, model_argument, set_option, settings_of
-from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, print_json, print_table, say
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, MOST_ROWS, print_json, print_table, say
 from skinbayes.errors import InputError
-
-MOST_ROWS = 200
-"""Longest table."""
 
 
 @click.command()

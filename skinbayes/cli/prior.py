@@ -5,10 +5,7 @@ from __future__ import annotations
 import click
 
 from skinbayes.cli.options import data_option, json_option, model_argument, seed_option
-from skinbayes.cli.output import print_json, print_sentences, print_table
-
-MOST_ROWS = 200
-"""Longest table: of more data those are listed that the priors expect least."""
+from skinbayes.cli.output import MOST_ROWS, print_json, print_sentences, print_table
 
 
 @click.command()

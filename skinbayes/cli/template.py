@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -28,10 +29,7 @@ def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> 
         refuse_existing([Path(output)], overwrite)
         write_text(Path(output), f"{found.header}\n")
     if as_json:
-        columns = [
-            {"name": column.name, "unit": column.unit, "meaning": column.meaning, "why": column.why}
-            for column in found.columns
-        ]
+        columns = [asdict(column) for column in found.columns]
         print_json({
             "model": found.model, "file": output, "header": found.header, "columns": columns, "notes": list(found.notes),
         })  # fmt: skip

@@ -14,7 +14,15 @@ from skinbayes import vocabulary
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.table import CsvTable, Problems, quoted
-from skinbayes.units import NUMBER, comma_advice, convert_array, describe_unit, is_unit, split_header
+from skinbayes.units import (
+    NUMBER,
+    comma_advice,
+    convert_array,
+    converts,
+    describe_unit,
+    is_unit,
+    split_header,
+)
 from skinbayes.vocabulary import Quantity
 
 LabelArray = NDArray[np.str_]
@@ -283,7 +291,7 @@ def _guess(name: str, unit: str | None) -> str:
     for base, apart in _split_units(name):
         for match, _ in vocabulary.meant(base, known):
             quantity, written = vocabulary.lookup(match), unit or apart
-            if quantity is not None and written and _converts(written, quantity.unit):
+            if quantity is not None and written and converts(written, quantity.unit):
                 where = "" if unit else ", with the unit in square brackets"
                 return f"{vocabulary.suggestions(base, known)} Write '{match} [{written}]'{where}"
     found = vocabulary.meant(name, known)
@@ -304,11 +312,3 @@ def _split_units(name: str) -> list[tuple[str, str]]:
         base, unit = "_".join(words[:-tail]), words[-tail:]
         apart += [(base, "/".join(unit)), (base, " ".join(unit))][: len(unit)]
     return [*found, *((base, unit) for base, unit in apart if is_unit(unit))]
-
-
-def _converts(unit: str, to_unit: str) -> bool:
-    try:
-        convert_array(1.0, unit, to_unit, "")
-    except InputError:
-        return False
-    return True

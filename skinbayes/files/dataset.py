@@ -385,13 +385,11 @@ def find_dataset(
         return path.resolve().name, path / DATA_FILE, described_in if described_in.is_file() else None
     if is_file:
         return path.stem, path, None
-    if path.suffix.lower() == ".csv":
-        beside = sorted(found.name for found in path.parent.glob("*.csv")) if path.parent.is_dir() else []
-        raise InputError(
-            f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file."
-            f"{_suggestions(path.name, beside)}"
-        )
+    is_csv = path.suffix.lower() == ".csv"
+    beside = path.parent.glob("*.csv") if is_csv and path.parent.is_dir() else ()
+    known = [found.name for found in beside] if is_csv else shipped
+    listed = "" if is_csv else f"; shipped are {', '.join(shipped)}"
     raise InputError(
-        f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file; shipped are "
-        f"{', '.join(shipped)}.{_suggestions(name_or_path, shipped)}"
+        f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file{listed}."
+        f"{_suggestions(path.name if is_csv else name_or_path, sorted(known))}"
     )

@@ -189,15 +189,16 @@ def _advice(unknown: UnknownUnit, to_unit: str) -> str:
     """What may have been meant: units like it that have the right dimension, or why a word is no unit."""
     if why := why_no_unit(unknown.word):
         return f" ({why})"
-    fitting = [text for text in nearest_units(unknown) if _fits(text, to_unit)][:2]
+    fitting = [text for text in nearest_units(unknown) if converts(text, to_unit)][:2]
     if not fitting and unknown.word and unknown.word != unknown.text:
         return f" (no word {_shortened(unknown.word)!r} is known in units)"
     return f" (did you mean {' or '.join(repr(text) for text in fitting)}?)" if fitting else ""
 
 
-def _fits(text: str, to_unit: str) -> bool:
+def converts(from_unit: str, to_unit: str) -> bool:
+    """Whether a text is a unit of the dimension of an SI unit."""
     try:
-        unit_conversion(text, to_unit)
+        unit_conversion(from_unit, to_unit)
     except (UnknownUnit, OtherDimension):
         return False
     return True

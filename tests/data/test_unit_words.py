@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from skinbayes.errors import InputError
-from skinbayes.units import convert_array, format_quantity, parse_quantity, unit_table
+from skinbayes.units import convert_array, format_quantity, parse_quantity
+from skinbayes.units.unit_words import UNIT_WORDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "data.md"
 
@@ -171,6 +172,17 @@ def test_commas_and_thousands(number: str, advice: str, blank: str) -> None:
     with pytest.raises(InputError) as caught:
         parse_quantity(f"{number}{blank}mN", "N", where="x")
     assert advice in str(caught.value)
+
+
+def unit_table() -> list[tuple[str, str, str]]:
+    return [
+        (
+            ", ".join(f"`{symbol}`" for symbol in unit.symbols),
+            " ".join(unit.prefixes),
+            ", ".join(unit.names),
+        )
+        for unit in UNIT_WORDS
+    ]
 
 
 def test_the_page_lists_every_unit() -> None:
