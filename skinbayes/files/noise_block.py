@@ -95,8 +95,10 @@ def _one_observable(
     family, broken = block.get("family"), unusable_noise_families()
     names = list(NOISE_FAMILIES)
     if family not in names:
-        if family in broken:
-            raise InputError(f"{where(*place, 'family')}: the noise family '{family}' is {broken[family]}")
+        if str(family) in broken:
+            raise InputError(
+                f"{where(*place, 'family')}: the noise family '{family}' is {broken[str(family)]}"
+            )
         hint = suggestions(str(family), names)
         raise InputError(
             f"{where(*place, 'family')}: found {family!r}.{hint} Expected one of {', '.join(names)}"
