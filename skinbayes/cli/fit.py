@@ -14,7 +14,7 @@ from skinbayes.cli.options import (
     json_option,
     model_argument,
     named_values,
-    seed_option,
+    number_option,
     set_option,
     settings_of,
 )
@@ -34,28 +34,10 @@ if TYPE_CHECKING:
 @click.command()
 @model_argument
 @data_option
-@seed_option("The same seed gives the same draws.")
-@click.option(
-    "--ess",
-    default=2000,
-    show_default=True,
-    type=click.IntRange(10),
-    help="Effective sample size wanted in every parameter.",
-)
-@click.option(
-    "--cores",
-    default=1,
-    show_default=True,
-    type=click.IntRange(1),
-    help="Worker processes; they do not change the draws.",
-)
-@click.option(
-    "--max-steps",
-    default=10_000,
-    show_default=True,
-    type=click.IntRange(100),
-    help="Stop here, converged or not (emcee).",
-)
+@number_option("--seed", 1, 0, "The same seed gives the same draws.")
+@number_option("--ess", 2000, 10, "Effective sample size wanted in every parameter.")
+@number_option("--cores", 1, 1, "Worker processes; they do not change the draws.")
+@number_option("--max-steps", 10_000, 100, "Stop here, converged or not (emcee).")
 @click.option(
     "--engine",
     default="emcee",

@@ -23,9 +23,13 @@ json_option = click.option(
 )
 
 
-def seed_option(meaning: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """The option ``--seed``."""
-    return click.option("--seed", default=1, show_default=True, type=click.IntRange(0), help=meaning)
+def number_option(
+    name: str, default: int, least: int, meaning: str, most: int | None = None
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """An option that takes a whole number."""
+    return click.option(
+        name, default=default, show_default=True, type=click.IntRange(least, most), help=meaning
+    )
 
 
 def named_values(option: str, pairs: Iterable[str], example: str) -> dict[str, str]:

@@ -62,9 +62,7 @@ def apply_settings(
 def _replace(
     parameters: list[ParameterSpec], name: str, level: str, value: float, key: str, text: str
 ) -> list[ParameterSpec]:
-    new = ParameterSpec(
-        name, QUANTITIES[name].unit, None, None, value, None, {"fixed": text}, "set by the user"
-    )
+    new = ParameterSpec.of_value(name, value, "set by the user", {"fixed": text})
     if not level:
         # what the file ties to one of its levels follows the value of all of them
         return [
