@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-LARGEST_POWER = 100
+Power = Annotated[float | int, Field(ge=-100, le=100)]
 
 
 class _Strict(BaseModel):
@@ -93,21 +93,10 @@ class CovariateBlock(_Strict):
 class DerivedBlock(_Strict):
     """``[derived.NAME]``: a product of powers of parameters and intermediate quantities, for all or some rows."""
 
-    product: dict[str, float | int]
+    product: dict[str, Power] = Field(min_length=1)
     rows: dict[str, list[str]] = Field(default_factory=dict)
     meaning: str = ""
     symbol: str = ""
-
-    @model_validator(mode="after")
-    def _not_empty(self) -> DerivedBlock:
-        if not self.product:
-            raise ValueError("'product' names no factor")
-        for factor, power in self.product.items():
-            if not abs(power) <= LARGEST_POWER:
-                raise ValueError(
-                    f"power {power} of '{factor}'; expected a finite number up to {LARGEST_POWER}"
-                )
-        return self
 
 
 class GridBlock(_Strict):

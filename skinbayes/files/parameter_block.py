@@ -12,7 +12,7 @@ import numpy as np
 
 from skinbayes.errors import InputError
 from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
-from skinbayes.units import parse_quantity
+from skinbayes.units import parse_quantity, unit_example
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, lookup, suggestions
 
 RESERVED_NAMES = ("chain", "draw", "row")
@@ -269,7 +269,5 @@ def _as_written(raw: Any) -> str:
 
 
 def _example(unit: str) -> str:
-    text = {"Pa": '"15 MPa"', "m": '"20 um"', "1": "0.4", "N": '"0.5 N"', "1/m": '"1e3 1/m"'}.get(
-        unit, f'"1 {unit}"'
-    )
+    text = unit_example(unit) if unit == "1" else f'"{unit_example(unit)}"'
     return f'{{ lognormal = [{text}, 0.5], source = "…" }} or {{ fixed = {text} }}'

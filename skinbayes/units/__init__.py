@@ -7,6 +7,7 @@ from skinbayes.units.conversion import (
     parse_quantity,
     product_unit,
     split_header,
+    unit_example,
 )
 from skinbayes.units.format import format_quantity
 from skinbayes.units.numbers import NUMBER, comma_advice
@@ -23,4 +24,5 @@ __all__ = [
     "parse_quantity",
     "product_unit",
     "split_header",
+    "unit_example",
 ]

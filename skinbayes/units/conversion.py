@@ -54,8 +54,13 @@ _MEANING = {
 
 def describe_unit(unit: str) -> str:
     """What is expected in ``unit``, for messages: ``"a pressure in Pa, for example '15 MPa'"``."""
-    meaning, example = _MEANING.get(unit, ("a value", f"1 {unit}"))
-    return f"{meaning}{'' if unit == '1' else f' in {unit}'}, for example '{example}'"
+    meaning = _MEANING[unit][0] if unit in _MEANING else "a value"
+    return f"{meaning}{'' if unit == '1' else f' in {unit}'}, for example '{unit_example(unit)}'"
+
+
+def unit_example(unit: str) -> str:
+    """A value in ``unit`` as a person would write it."""
+    return _MEANING[unit][1] if unit in _MEANING else f"1 {unit}"
 
 
 @cache

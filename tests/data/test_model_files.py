@@ -280,7 +280,7 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     ),
     # derived quantities and conditions
     "derived without product": (GOOD + "[derived.x]\nmeaning = 'y'\n", ("derived.x.product", "is missing")),
-    "derived of nothing": (GOOD + "[derived.x]\nproduct = {}\n", ("derived.x", "names no factor")),
+    "derived of nothing": (GOOD + "[derived.x]\nproduct = {}\n", ("derived.x", "at least 1 item")),
     "derived of something unknown": (
         GOOD + "[derived.x]\nproduct = { yield_stres = 1 }\n", ("derived.x", "yield_stres", "'yield_stress'"),
     ),
