@@ -285,7 +285,7 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
         GOOD + "[derived.x]\nproduct = { yield_stres = 1 }\n", ("derived.x", "yield_stres", "'yield_stress'"),
     ),
     "derived power a word": (GOOD + "[derived.x]\nproduct = { yield_stress = 'two' }\n", ("derived.x", "'two'")),
-    "derived power nan": (GOOD + "[derived.x]\nproduct = { yield_stress = nan }\n", ("derived.x", "finite")),
+    "derived power nan": (GOOD + "[derived.x]\nproduct = { yield_stress = nan }\n", ("derived.x", "found nan", "-100")),
     "derived rows unknown": (
         GOOD + "[derived.x]\nproduct = { yield_stress = 1 }\nrows = { liquid = ['wine'] }\n", ("derived.x.rows", "wine"),
     ),
