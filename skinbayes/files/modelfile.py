@@ -82,10 +82,6 @@ class ModelSpec:
         return self.path.parent == shipped_folder("models")
 
 
-RETIRED = ("capillary-film", "drying", "drying-glass", "humid-air")
-"""Models of which there was a second file for sharp gaps, called '…-delta'."""
-
-
 def find_model(name: str | Path) -> Path:
     """Return the file of a shipped model, or the given path.
 
@@ -93,12 +89,6 @@ def find_model(name: str | Path) -> Path:
     """
     text = str(name)
     shipped = shipped_names("models")
-    if text.removesuffix("-delta") in RETIRED and text.endswith("-delta"):
-        base = text.removesuffix("-delta")
-        raise InputError(
-            f"the model '{text}' is now an option of '{base}': predict it with 'skinbayes predict {base} --set closure=sharp'; "
-            f"to fit it, write a copy with 'skinbayes new {base} -o mine.toml' and add a table [options] with closure = \"sharp\""
-        )
     if text in shipped:
         return shipped_folder("models") / f"{text}.toml"
     path = Path(text)

@@ -141,13 +141,6 @@ class ModelBlock(_Strict):
     conditions: dict[str, GridBlock] = Field(default_factory=dict)
     baseline_models: list[str] = Field(default_factory=list)
 
-    @model_validator(mode="before")
-    @classmethod
-    def _retired(cls, content: Any) -> Any:
-        if isinstance(content, dict) and "yardsticks" in content:
-            raise ValueError("'yardsticks' is called 'baseline_models' now")
-        return content
-
     @model_validator(mode="after")
     def _data_need_noise(self) -> ModelBlock:
         if (self.data is None) != (self.noise is None):
