@@ -18,13 +18,7 @@ from skinbayes.cli.options import (
     set_option,
     settings_of,
 )
-from skinbayes.cli.output import (
-    EXIT_DONE,
-    EXIT_INTERRUPTED,
-    EXIT_NOT_CONVERGED,
-    print_json,
-    say,
-)
+from skinbayes.cli.output import EXIT_DONE, EXIT_INTERRUPTED, EXIT_NOT_CONVERGED, print_json, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
