@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray, arrays
 
 
 def friction_coefficient(
@@ -36,10 +36,11 @@ def friction_coefficient(
     >>> print(f"{friction_coefficient(15e6, 6.48133e-4, nominal_pressure=6830.0):.4f}")
     1.4234
     """
-    shear, area, pressure = (
-        np.asarray(x, dtype=np.float64)
-        for x in (frictional_shear_stress, relative_contact_area, nominal_pressure)
-    )
     with np.errstate(all="ignore"):
-        possible = (shear >= 0) & (area >= 0) & (pressure > 0)
-        return np.where(possible, shear * area / pressure, np.nan)[()]
+        return coefficient(*arrays(frictional_shear_stress, relative_contact_area, nominal_pressure))
+
+
+def coefficient(shear: FloatArray, area: FloatArray, pressure: FloatArray) -> FloatArray:
+    """`friction_coefficient` of arrays; silences no warnings."""
+    possible = (np.minimum(shear, area) >= 0.0) & (pressure > 0.0)
+    return np.where(possible, shear * area / pressure, np.nan)[()]

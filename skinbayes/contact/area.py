@@ -42,7 +42,8 @@ def persson_contact_area(nominal_pressure: ArrayLike, twice_stress_variance: Arr
 
 def without_load(reach: FloatArray, pressure: FloatArray, width: FloatArray) -> FloatArray:
     """``reach`` = p0/√V with 0 in place of 0/0, smooth bodies that nothing presses together; overwritten."""
-    if (unclear := np.isnan(reach)).any():
+    unclear = np.isnan(reach)
+    if np.count_nonzero(unclear):
         return np.where(unclear & (pressure == 0) & (width == 0), 0.0, reach)
     return reach
 

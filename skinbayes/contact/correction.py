@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray, arrays
 from skinbayes.roughness._rules import gauss_unit
 
 IndexArray: TypeAlias = NDArray[np.intp]
@@ -40,10 +40,17 @@ _CELL_MEASURE = _STEP * _POINT_WEIGHTS[:, None] * _CELL_Y
 
 
 class _Table(NamedTuple):
-    """ln Φ at the knots and dln y/dln Φ there, shapes ``(G, knots)`` for G values of γ."""
+    """Cubic Hermite interpolation of ln y over ln Φ for G values of γ.
+
+    Attributes
+    ----------
+    log_phi : ln Φ at the knots, shape ``(G, knots)``
+    cells : where the cell from each knot begins, its width, and the coefficients of its cubic, shape ``(6, G, knots)``; the last
+        knot has the cell before it
+    """
 
     log_phi: FloatArray
-    slope: FloatArray
+    cells: FloatArray
 
 
 def _table(gamma: FloatArray) -> _Table:
@@ -57,12 +64,19 @@ def _table(gamma: FloatArray) -> _Table:
     b, start = 4 / np.pi * (1 - g), _KNOT_Y[_CELLS]
     rise = g * (_KNOT_Y[_CELLS + 1 :] - start)
     phi[:, _CELLS + 1 :] = phi[:, [_CELLS]] + (rise - b * np.log1p(rise / (g * start + b))) / np.square(g)
-    return _Table(np.log(phi), phi * (g + (1 - g) * _KNOT_AREA_SQUARED) / _KNOT_Y)
+    log_phi, slope = np.log(phi), phi * (g + (1 - g) * _KNOT_AREA_SQUARED) / _KNOT_Y
+    width, rise = np.diff(log_phi), np.diff(_KNOTS)
+    left, right = width * slope[:, :-1], width * slope[:, 1:]
+    knots = np.broadcast_to(_KNOTS[:-1], width.shape)
+    cubic = knots, left, 3 * rise - 2 * left - right, left + right - 2 * rise
+    cells = np.stack([log_phi[:, :-1], width, *cubic])
+    return _Table(log_phi, np.concatenate([cells, cells[..., -1:]], axis=-1))
 
 
 @lru_cache(maxsize=_CACHED)
-def _single_table(gamma: float) -> _Table:
-    return _table(np.array([gamma]))
+def _single_table(gamma: float) -> tuple[FloatArray, FloatArray]:
+    log_phi, cells = _table(np.array([gamma]))
+    return log_phi[0], np.ascontiguousarray(cells[:, 0])
 
 
 def corrected_twice_stress_variance(
@@ -101,67 +115,52 @@ def corrected_twice_stress_variance(
     >>> print(f"{corrected_twice_stress_variance(6830.0, 3.36644e14):.5e}")
     1.41392e+14
     """
-    pressure, width, gamma = (
-        np.asarray(x, dtype=np.float64) for x in (nominal_pressure, twice_stress_variance, area_correction)
-    )
     with np.errstate(all="ignore"):
-        ratio = width / np.square(np.where(pressure >= 0, pressure, np.nan))
-        if (unclear := np.isnan(ratio)).any():
-            # squares that under- or overflow: contact is complete without roughness, and vanishes under an infinite one
-            known = unclear & (pressure >= 0) & (pressure < np.inf) & (width >= 0)
-            ratio = np.where(known, np.where(width > 0, np.inf, 0.0), ratio)
-        if gamma.size == 1:
-            value = float(gamma.reshape(-1)[0])
-            shape = np.broadcast_shapes(ratio.shape, gamma.shape)
-            fraction = _fraction_of_one(ratio.reshape(-1), value).reshape(shape)
-        else:
-            ratio, gamma = np.broadcast_arrays(ratio, gamma)
-            distinct, member = np.unique(gamma.reshape(-1), return_inverse=True)
-            fraction = _fraction_of_many(ratio.reshape(-1), distinct, member).reshape(ratio.shape)
-        return np.asarray(width * fraction)[()]
+        return corrected(*arrays(nominal_pressure, twice_stress_variance, area_correction))
+
+
+def corrected(pressure: FloatArray, width: FloatArray, gamma: FloatArray) -> FloatArray:
+    """`corrected_twice_stress_variance` of arrays; silences no warnings."""
+    ratio = width / np.square(np.where(pressure >= 0.0, pressure, np.nan))
+    unclear = np.isnan(ratio)
+    if np.count_nonzero(unclear):
+        # squares that under- or overflow: contact is complete without roughness, and vanishes under an infinite one
+        known = unclear & (pressure >= 0) & (pressure < np.inf) & (width >= 0)
+        ratio = np.where(known, np.where(width > 0, np.inf, 0.0), ratio)
+    if gamma.size == 1:
+        fraction = _fraction_of_one(ratio, gamma.item())
+        return np.asarray(width * fraction.reshape((1,) * (gamma.ndim - ratio.ndim) + ratio.shape))[()]
+    ratio, gamma = np.broadcast_arrays(ratio, gamma)
+    distinct, member = np.unique(gamma.reshape(-1), return_inverse=True)
+    fraction = _fraction_of_many(ratio.reshape(-1), distinct, member.reshape(-1))
+    return np.asarray(width * fraction.reshape(ratio.shape))[()]
 
 
 def _fraction_of_one(ratio: FloatArray, gamma: float) -> FloatArray:
-    """V_eff/V for ``ratio`` = V/p0² of shape ``(M,)`` and one γ."""
+    """V_eff/V for ``ratio`` = V/p0² of any shape and one γ."""
     if not 0 < gamma <= 1:
         return np.full(ratio.shape, np.nan)
     if gamma == 1:
         return np.where(np.isnan(ratio), np.nan, 1.0)
-    log_phi, slope = (part[0] for part in _single_table(gamma))
+    log_phi, cells = _single_table(gamma)
     # in full contact V_eff = V, under a vanishing load V_eff = γV: both are the ends of the table
     log_ratio = np.minimum(np.maximum(np.log(ratio), log_phi[0]), log_phi[-1])
-    cell = np.minimum(np.searchsorted(log_phi, log_ratio, side="right") - 1, _KNOTS.size - 2)
-    ends = log_phi[cell], log_phi[cell + 1], slope[cell], slope[cell + 1]
-    return _interpolate(log_ratio, cell, *ends)
+    return _interpolate(log_ratio, cells.take(log_phi[1:].searchsorted(log_ratio, side="right"), axis=1))
 
 
 def _fraction_of_many(ratio: FloatArray, distinct: FloatArray, member: IndexArray) -> FloatArray:
-    """The same, bit for bit, where element i has the γ ``distinct[member[i]]``."""
-    log_phi, slope = _table(distinct)
-    first, last = log_phi[member, 0], log_phi[member, -1]
-    log_ratio = np.minimum(np.maximum(np.log(ratio), first), last)
-    cell = np.count_nonzero(log_phi[member] <= log_ratio[:, None], axis=-1) - 1
-    cell = np.clip(cell, 0, _KNOTS.size - 2)
-    ends = log_phi[member, cell], log_phi[member, cell + 1], slope[member, cell], slope[member, cell + 1]
-    fraction = _interpolate(log_ratio, cell, *ends)
+    """The same, bit for bit, of shape ``(M,)`` where element i has the γ ``distinct[member[i]]``."""
+    log_phi, cells = _table(distinct)
+    log_ratio = np.minimum(np.maximum(np.log(ratio), log_phi[member, 0]), log_phi[member, -1])
+    cell = np.count_nonzero(log_phi[member, 1:] <= log_ratio[:, None], axis=-1)
+    fraction = _interpolate(log_ratio, cells[:, member, cell])
     gamma = distinct[member]
     fraction = np.where(gamma == 1, np.where(np.isnan(ratio), np.nan, 1.0), fraction)
     return np.where((gamma > 0) & (gamma <= 1), fraction, np.nan)
 
 
-def _interpolate(
-    log_ratio: FloatArray,
-    cell: IndexArray,
-    left: FloatArray,
-    right: FloatArray,
-    left_slope: FloatArray,
-    right_slope: FloatArray,
-) -> FloatArray:
-    """V_eff/V by cubic Hermite interpolation of ln y over ln Φ, all shapes ``(M,)``."""
-    width = right - left
-    w = (log_ratio - left) / width
-    rest = 1 - w
-    curved = w * rest * width * (rest * left_slope - w * right_slope)
-    knot = _KNOTS[cell]
-    log_y = knot + (_KNOTS[cell + 1] - knot) * (w * w * (3 - 2 * w)) + curved
-    return np.asarray(np.exp(log_y - log_ratio))
+def _interpolate(log_ratio: FloatArray, cell: FloatArray) -> FloatArray:
+    """V_eff/V by cubic interpolation of ln y over ln Φ; ``cell`` is that of `_Table` for each element."""
+    start, width, c0, c1, c2, c3 = cell
+    w = (log_ratio - start) / width
+    return np.asarray(np.exp(c0 + w * (c1 + w * (c2 + w * c3)) - log_ratio))

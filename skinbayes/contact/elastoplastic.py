@@ -7,12 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import erf, erfc
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray, arrays
 from skinbayes.contact.area import without_load
-from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
+from skinbayes.contact.correction import AREA_CORRECTION, corrected
 from skinbayes.roughness._rules import gauss_unit
 
 _SWITCH = 0.75  # √V/σ_Y from which the Fourier series is used instead of the image sources
+_FULLY_PLASTIC = 17.5  # √V/σ_Y from which all terms of the Fourier series are 0 in floating point
 _HARMONICS = np.arange(1.0, 9.0)
 _ODD_HARMONICS = _HARMONICS[::2]
 _IMAGES = np.arange(1.0, 8.0)
@@ -95,10 +96,10 @@ def elastoplastic_contact_area(
     >>> print(f"{dry.total:.4e} {dry.plastic_fraction:.4f}")
     1.3660e-04 1.0000
     """
-    ratio, spread, reach, shape = _dimensionless(
-        nominal_pressure, twice_stress_variance, yield_stress, area_correction
-    )
     with np.errstate(all="ignore"):
+        ratio, spread, reach, shape = _dimensionless(
+            *arrays(nominal_pressure, twice_stress_variance, yield_stress, area_correction)
+        )
         elastic, plastic, non_contact = np.full((3, ratio.size), np.nan)
         yielded = (ratio >= 1) & ~np.isnan(spread)
         # without a yield stress the image sources are at infinity; most skin of interest is of this kind
@@ -156,42 +157,46 @@ def total_contact_area(
     >>> print(f"{dry:.4e} {wet:.4e}")
     1.3660e-04 6.4817e-04
     """
-    ratio, spread, reach, shape = _dimensionless(
-        nominal_pressure, twice_stress_variance, yield_stress, area_correction
-    )
     with np.errstate(all="ignore"):
-        total = np.where(ratio >= 1, 1.0, erf(reach))
-        total[np.isnan(ratio + spread)] = np.nan
-        wide = np.flatnonzero((ratio < 1) & (spread >= _SWITCH))
-        imaged = np.flatnonzero((ratio < 1) & (spread < _SWITCH) & (2 - ratio < _NO_IMAGE * spread))
-        if wide.size:
-            decay = np.exp(-np.square(_HARMONICS * (np.pi / 2 * spread[wide])[:, None])) / _HARMONICS
-            waves = np.sin(np.pi * _HARMONICS * ratio[wide, None]) * decay
-            total[wide] = ratio[wide] + 2 / np.pi * waves.sum(axis=-1)
-        if imaged.size:
-            r, s, c = ratio[imaged], spread[imaged], reach[imaged]
-            total[imaged] += _difference(_IMAGES[1::2], r, s, c, (2 - r) / s).sum(axis=-1)
+        return total_area(*arrays(nominal_pressure, twice_stress_variance, yield_stress, area_correction))
+
+
+def total_area(pressure: FloatArray, width: FloatArray, limit: FloatArray, gamma: FloatArray) -> FloatArray:
+    """`total_contact_area` of arrays; silences no warnings."""
+    ratio, spread, reach, shape = _dimensionless(pressure, width, limit, gamma)
+    partly, yielded = ratio < 1.0, ratio >= 1.0
+    total = np.where(partly, np.where(spread >= _FULLY_PLASTIC, ratio, erf(reach)), np.nan)
+    if np.count_nonzero(yielded):
+        total[yielded] = np.where(np.isnan(spread[yielded]), np.nan, 1.0)
+    # contact of which some yields
+    near = partly & (spread < _FULLY_PLASTIC) & (2.0 - ratio < _NO_IMAGE * spread)
+    if not np.count_nonzero(near):
+        return total.reshape(shape)[()]
+    wide = near & (spread >= _SWITCH)
+    if np.count_nonzero(wide):
+        r, s = ratio[wide], spread[wide]
+        decay = np.exp(-np.square(_HARMONICS * (np.pi / 2 * s)[:, None])) / _HARMONICS
+        waves = np.sin(np.pi * _HARMONICS * r[:, None]) * decay
+        total[wide] = r + 2 / np.pi * waves.sum(axis=-1)
+    imaged = near & ~wide
+    if np.count_nonzero(imaged):
+        r, s, c = ratio[imaged], spread[imaged], reach[imaged]
+        total[imaged] += _difference(_IMAGES[1::2], r, s, c, (2 - r) / s).sum(axis=-1)
     return total.reshape(shape)[()]
 
 
 def _dimensionless(
-    nominal_pressure: ArrayLike,
-    twice_stress_variance: ArrayLike,
-    yield_stress: ArrayLike,
-    area_correction: ArrayLike,
+    pressure: FloatArray, width: FloatArray, limit: FloatArray, gamma: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, tuple[int, ...]]:
-    """p0/σ_Y, √V_eff/σ_Y and p0/√V_eff, dimensionless, flat, and the shape they had."""
-    pressure, width, limit = (
-        np.asarray(x, dtype=np.float64) for x in (nominal_pressure, twice_stress_variance, yield_stress)
-    )
-    effective = corrected_twice_stress_variance(pressure, width, area_correction=area_correction)
-    with np.errstate(all="ignore"):
-        limit = np.where(limit > 0, limit, np.nan)
-        root = np.sqrt(effective)
-        reach = without_load(pressure / root, pressure, root)
-        parameters = np.broadcast_arrays(pressure / limit, root / limit, reach)
-    ratio, spread, reach = (x.reshape(-1) for x in parameters)
-    return ratio, spread, reach, parameters[0].shape
+    """p0/σ_Y, √V_eff/σ_Y and p0/√V_eff, dimensionless, flat, and the shape they had; silences no warnings."""
+    limit = np.where(limit > 0.0, limit, np.nan)
+    root = np.sqrt(corrected(pressure, width, gamma))
+    spread = root / limit
+    flat = [
+        (x if x.shape == spread.shape else np.broadcast_to(x, spread.shape)).reshape(-1)
+        for x in (pressure / limit, spread, without_load(pressure / root, pressure, root))
+    ]
+    return flat[0], flat[1], flat[2], spread.shape
 
 
 def _fourier(

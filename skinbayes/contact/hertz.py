@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray, arrays
 
 
 class HertzSphere(NamedTuple):
@@ -60,13 +60,21 @@ def sphere_contact(
     >>> print(f"{contact.contact_radius:.4e} m, {contact.mean_pressure:.1f} Pa")
     4.8274e-03 m, 6829.4 Pa
     """
-    force, radius, modulus = (
-        np.asarray(x, dtype=np.float64) for x in (normal_force, sphere_radius, reduced_modulus)
-    )
+    force, radius, modulus = arrays(normal_force, sphere_radius, reduced_modulus)
     with np.errstate(all="ignore"):
-        force = np.where((force >= 0) & (radius > 0) & (modulus > 0), force, np.nan)
-        contact_radius = np.cbrt(0.75 * force * radius / modulus)
-        mean = 2 / (3 * np.pi) * np.cbrt(6 * force * np.square(modulus / radius))
+        contact_radius = np.cbrt(0.75 * _possible(force, radius, modulus) * radius / modulus)
+        mean = mean_pressure(force, radius, modulus)
         return HertzSphere(
             contact_radius[()], mean[()], (1.5 * mean)[()], (np.square(contact_radius) / radius)[()]
         )
+
+
+def mean_pressure(force: FloatArray, radius: FloatArray, modulus: FloatArray) -> FloatArray:
+    """Mean pressure of `sphere_contact` alone, Pa, for its arguments as arrays; silences no warnings."""
+    squared = 6.0 * _possible(force, radius, modulus) * np.square(modulus / radius)
+    return np.asarray(2 / (3 * np.pi) * np.cbrt(squared))
+
+
+def _possible(force: FloatArray, radius: FloatArray, modulus: FloatArray) -> FloatArray:
+    """The force, nan where any of the three is impossible."""
+    return np.where((force >= 0.0) & (np.minimum(radius, modulus) > 0.0), force, np.nan)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact.solid import reduced_modulus
-from skinbayes.roughness._fields import Floats, as_field, with_axes
+from skinbayes.contact.solid import plane_strain
+from skinbayes.roughness._fields import Floats, hold_floats, with_axes
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -37,13 +37,12 @@ class HomogeneousSolid:
     poisson_ratio: Floats = 0.5
 
     def __post_init__(self) -> None:
-        for name in self.__dataclass_fields__:
-            object.__setattr__(self, name, as_field(getattr(self, name)))
+        hold_floats(self)
 
     @property
     def contact_modulus(self) -> FloatArray:
         """E*, Pa, batch shape."""
-        return reduced_modulus(self.young_modulus, self.poisson_ratio)
+        return plane_strain(self.young_modulus, self.poisson_ratio)
 
     surface_modulus = contact_modulus
 

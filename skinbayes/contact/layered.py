@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact.solid import reduced_modulus
-from skinbayes.roughness._fields import Floats, as_field, with_axes
+from skinbayes.contact.solid import plane_strain
+from skinbayes.roughness._fields import Floats, hold_floats, remembering_numbers, with_axes
 
 _DEEP = 400.0  # of qd, where e^(−2qd) is 0 in floating point
 
@@ -47,13 +47,12 @@ class LayeredSkin:
     layer_thickness: Floats
 
     def __post_init__(self) -> None:
-        for name in self.__dataclass_fields__:
-            object.__setattr__(self, name, as_field(getattr(self, name)))
+        hold_floats(self)
 
     @property
     def contact_modulus(self) -> FloatArray:
         """E1*, Pa, batch shape: the layer is far thinner than a contact is wide."""
-        return reduced_modulus(self.young_modulus_bulk, self.poisson_ratio_bulk)
+        return plane_strain(self.young_modulus_bulk, self.poisson_ratio_bulk)
 
     @property
     def surface_modulus(self) -> FloatArray:
@@ -75,10 +74,10 @@ class LayeredSkin:
         at_zero, ground, linear, product, four_m = (with_axes(x, axes) for x in _contrast(self))
         # beyond _DEEP the half-space is not felt, and inf times 0 has no value
         x = np.minimum(wavevector * with_axes(self.layer_thickness, axes), _DEEP)
-        rise = np.expm1(-2 * x)  # −g
-        bending = four_m * (x * (1 + rise))
+        rise = np.expm1(-2.0 * x)  # −g
+        bending = four_m * (x * (1.0 + rise))
         part = product * rise
-        numerator = at_zero - part * (2 + rise) + bending
+        numerator = at_zero - part * (2.0 + rise) + bending
         denominator = ground + rise * (part - linear) - bending * x
         return np.asarray(denominator / numerator)
 
@@ -98,28 +97,44 @@ class LayeredSkin:
         return np.asarray(compliance), np.asarray(compliance * (1 + stiffening))
 
 
+class _Poisson(NamedTuple):
+    """What Eq. 4 needs of the Poisson ratios alone."""
+
+    shear: FloatArray  # (1 + ν1)/(1 + ν0), from a ratio of Young's moduli to one of shear moduli; nan if impossible
+    layer: FloatArray  # f = 4(1 − ν0)
+    square: FloatArray  # f²
+    bulk: FloatArray  # 3 − 4ν1
+    both: FloatArray  # 4(1 − ν1)
+
+
+@remembering_numbers
+def _poisson(nu0: FloatArray, nu1: FloatArray) -> _Poisson:
+    possible = (np.minimum(nu0, nu1) > -1) & (np.maximum(nu0, nu1) <= 0.5)
+    with np.errstate(all="ignore"):
+        shear = np.where(possible, (1 + nu1) / (1 + nu0), np.nan)
+    layer = 4 - 4 * nu0
+    return _Poisson(shear, layer, layer * layer, 3 - 4 * nu1, 4 - 4 * nu1)
+
+
 class _Contrast(NamedTuple):
     """What Eq. 4 needs of the materials: ``S = (c + mn g(1+e) + 4mxe)/(a + b g + mn g² − 4mx²e)``, g = 1 − e, e = exp(−2x).
 
-    Every term is formed without subtracting nearly equal numbers, which 1 − m, 1 − n and 1 − mn are for a stiff layer.
+    All are multiplied by the denominators of m = M/(r + 3 − 4ν0) and n = N/R with the ratio r of the shear moduli,
+    M = r − 1, R = 1 + (3 − 4ν1) r, N = R − f and R + M = 4(1 − ν1) r. Every term is formed without subtracting nearly equal
+    numbers, which 1 − m, 1 − n and 1 − mn are for a stiff layer.
     """
 
-    at_zero: FloatArray  # c = 1 − mn
-    ground: FloatArray  # a = (1 − m)(1 − n)
-    linear: FloatArray  # b = (1 − m)n + (1 − n)m
-    product: FloatArray  # mn
-    four_m: FloatArray  # 4m
+    at_zero: FloatArray  # 1 − mn: f(R + M)
+    ground: FloatArray  # (1 − m)(1 − n): f²
+    linear: FloatArray  # (1 − m)n + (1 − n)m: f(R + M − f)
+    product: FloatArray  # mn: MN
+    four_m: FloatArray  # 4m: 4MR
 
 
 def _contrast(skin: LayeredSkin) -> _Contrast:
-    nu0, nu1 = skin.poisson_ratio_layer, skin.poisson_ratio_bulk
+    shear, layer, square, bulk, both = _poisson(skin.poisson_ratio_layer, skin.poisson_ratio_bulk)
     stiff, soft = skin.young_modulus_layer, skin.young_modulus_bulk
-    possible = (np.minimum(stiff, soft) > 0) & (skin.layer_thickness > 0)
-    possible = possible & (np.minimum(nu0, nu1) > -1) & (np.maximum(nu0, nu1) <= 0.5)
-    shear_ratio = np.where(possible, stiff / soft * ((1 + nu1) / (1 + nu0)), np.nan)
-    four = 4 - 4 * nu0
-    one_minus_m = four / (shear_ratio + (3 - 4 * nu0))
-    one_minus_n = four / (1 + shear_ratio * (3 - 4 * nu1))
-    m, n = 1 - one_minus_m, 1 - one_minus_n
-    linear = one_minus_m * n + one_minus_n * m
-    return _Contrast(one_minus_m + m * one_minus_n, one_minus_m * one_minus_n, linear, m * n, 4 * m)
+    smallest = np.minimum(np.minimum(stiff, soft), skin.layer_thickness)
+    ratio = np.where(smallest > 0.0, stiff / soft * shear, np.nan)
+    m, wide, total = ratio - 1.0, 1.0 + bulk * ratio, both * ratio
+    return _Contrast(layer * total, square, layer * (total - layer), m * (wide - layer), 4.0 * m * wide)

@@ -9,7 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
-from skinbayes.roughness._fields import with_axes
+from skinbayes.roughness._fields import Floats, remembering_numbers, with_axes
 
 
 class ElasticSolid(Protocol):
@@ -107,8 +107,18 @@ def reduced_modulus(young_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Float
     """
     modulus, ratio = np.asarray(young_modulus, dtype=np.float64), np.asarray(poisson_ratio, dtype=np.float64)
     with np.errstate(all="ignore"):
-        possible = (modulus > 0) & (ratio > -1) & (ratio <= 0.5)
-        return np.where(possible, modulus / (1 - ratio * ratio), np.nan)[()]
+        return plane_strain(modulus, ratio)
+
+
+def plane_strain(modulus: Floats, ratio: Floats) -> FloatArray:
+    """`reduced_modulus` of arrays; silences no warnings."""
+    return np.where(modulus > 0.0, modulus / _stiffening(ratio), np.nan)[()]
+
+
+@remembering_numbers
+def _stiffening(ratio: FloatArray) -> FloatArray:
+    """1 − ν², nan where it is impossible."""
+    return np.where((ratio > -1) & (ratio <= 0.5), 1 - ratio * ratio, np.nan)
 
 
 def surface_response(solid: ElasticSolid, wavevector: ArrayLike) -> FloatArray:

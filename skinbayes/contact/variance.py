@@ -56,10 +56,17 @@ def twice_stress_variance(
     else:
         upper, axes = np.atleast_1d(np.asarray(wavevector, dtype=np.float64)), 1
     with np.errstate(all="ignore"):
-        saturation = SATURATION / skin.transition_length
-        nodes, weights, remainder = spectrum.slope_quadrature(saturation, upper)
-        # sums must run along a contiguous last axis, so that a batch and its rows agree to the last bit
-        terms = np.ascontiguousarray(weights * np.square(skin.inverse_response(nodes, axes + 1)))
-        modulus = with_axes(skin.surface_modulus, axes)
-        total = np.pi * np.square(modulus) * (terms.sum(axis=-1) + remainder)
+        total = integrated(spectrum, skin, upper, axes)
     return np.asarray(total if wavevector is None or np.ndim(wavevector) else total[..., 0])[()]
+
+
+def integrated(
+    spectrum: PowerSpectrum, skin: ElasticSolid, upper: FloatArray | None = None, axes: int = 0
+) -> FloatArray:
+    """`twice_stress_variance` up to wavevectors on ``axes`` last axes, or of the whole band; silences no warnings."""
+    saturation = SATURATION / skin.transition_length
+    nodes, weights, remainder = spectrum.slope_quadrature(saturation, upper)
+    # sums must run along a contiguous last axis, so that a batch and its rows agree to the last bit
+    terms = np.ascontiguousarray(weights * np.square(skin.inverse_response(nodes, axes + 1)))
+    modulus = with_axes(skin.surface_modulus, axes)
+    return np.asarray(np.pi * np.square(modulus) * (terms.sum(axis=-1) + remainder))

@@ -11,10 +11,11 @@ from skinbayes.contact import (
     HomogeneousSolid,
     LayeredSkin,
     elastoplastic_contact_area,
-    sphere_contact,
     twice_stress_variance,
     validate_solid,
 )
+from skinbayes.contact.hertz import mean_pressure
+from skinbayes.contact.variance import integrated
 from skinbayes.errors import InputError
 from skinbayes.forward.base import ROUGHNESS_INPUTS, Inputs, Tables
 from skinbayes.forward.deduplicated_rows import on_distinct
@@ -95,13 +96,7 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
         return np.asarray(inputs["nominal_pressure"], dtype=float)
     if "nominal_contact_area" in inputs:
         return np.asarray(inputs["normal_force"] / inputs["nominal_contact_area"], dtype=float)
-    modulus = skin_of(inputs).contact_modulus
-    return np.asarray(
-        sphere_contact(
-            inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus
-        ).mean_pressure,
-        dtype=float,
-    )
+    return mean_pressure(inputs["normal_force"], inputs["sphere_radius"], skin_of(inputs).contact_modulus)
 
 
 def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
@@ -141,7 +136,7 @@ def variance_of(inputs: Inputs, tables: Tables) -> FloatArray:
     """
     return on_distinct(
         {name: inputs[name] for name in _ENTERS_VARIANCE if name in inputs},
-        lambda skins: np.asarray(twice_stress_variance(spectrum_of(skins, tables), skin_of(skins))),
+        lambda skins: integrated(spectrum_of(skins, tables), skin_of(skins)),
     )
 
 

@@ -99,22 +99,22 @@ def on_distinct(inputs: Inputs, function: Callable[[Inputs], FloatArray]) -> Flo
     >>> on_distinct(rows, lambda few: few["modulus"] * few["depth"])
     array([[14., 18., 14., 14.]])
     """
-    tables = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
-    differing = [table for table in tables.values() if table.ndim == 2 and table.shape[-1] > 1]
+    tables = {name: table for name, table in inputs.items() if table.ndim == 2}
+    differing = [table for table in tables.values() if table.shape[-1] > 1]
     if not differing:
         return function(inputs)
     count = differing[0].shape[-1]
-    if count * max(table.shape[0] if table.ndim == 2 else 1 for table in tables.values()) < FEW:
+    if count * max(map(len, tables.values())) < FEW:
+        return function(inputs)
+    # often no two rows agree, as the first vector shows
+    if any(len(table) and len(set(table[0].tolist())) == count for table in differing):
         return function(inputs)
     place = _kinds(differing, count)
     first = _first_of_each(place)
     if len(first) == count:
         return function(inputs)
-    few = {
-        name: np.take(table, first, axis=-1) if table.ndim == 2 and table.shape[-1] > 1 else table
-        for name, table in tables.items()
-    }
-    values = function(few)
+    few = {name: table.take(first, axis=-1) for name, table in tables.items() if table.shape[-1] > 1}
+    values = function({**inputs, **few})
     return np.take(values, place, axis=-1) if np.shape(values)[-1:] == (len(first),) else values
 
 

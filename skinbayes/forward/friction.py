@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from skinbayes.arrays import FloatArray
+from skinbayes.contact.elastoplastic import total_area
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_area import CONTACT_AREA_PROFILE
 from skinbayes.forward.contact_inputs import (
@@ -17,17 +18,15 @@ from skinbayes.forward.contact_inputs import (
     variance_of,
 )
 from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
-from skinbayes.friction import friction_coefficient
+from skinbayes.friction import coefficient
 from skinbayes.roughness import rms_slope
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     pressure = nominal_pressure_of(inputs)
-    area = contact_area_of(
-        {**inputs, "nominal_pressure": pressure}, tables, variance_of(inputs, tables)
-    ).total
-    shear_stress = inputs["frictional_shear_stress"]
-    return {"friction_coefficient": friction_coefficient(shear_stress, area, nominal_pressure=pressure)}
+    twice_variance = variance_of(inputs, tables)
+    area = total_area(pressure, twice_variance, inputs["yield_stress"], inputs["area_correction"])
+    return {"friction_coefficient": coefficient(inputs["frictional_shear_stress"], area, pressure)}
 
 
 def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

@@ -70,7 +70,7 @@ class BoundModel:
         """Name of the model."""
         return self.spec.name
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the free parameters; ``name[level]`` where a parameter differs by a grouping column."""
         return tuple(parameter.label for parameter in self.free)

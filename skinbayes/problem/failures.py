@@ -46,4 +46,4 @@ def without_underflow(values: FloatArray) -> FloatArray:
 
 def impossible(values: FloatArray) -> FloatArray:
     """Log-densities in which what is no number, or infinitely likely, counts as impossible."""
-    return np.where(np.isnan(values) | (values == np.inf), -np.inf, values)
+    return np.where(values < np.inf, values, -np.inf)

@@ -75,27 +75,26 @@ class InputPlan:
 
     def values(self, theta: FloatArray) -> FloatArray:
         """Values for a batch of parameter vectors ``(B, D)``: shape ``(B, 1)`` or ``(B, n_rows)``; ``(1, ·)`` if fixed."""
-        is_free, position, constant = self._prepared
-        if not is_free.any():
-            return constant
-        free = np.ascontiguousarray(theta[:, position])
-        if self._is_tied:
-            free = free * self.times
-        return free if is_free.all() else np.where(is_free, free, constant)
+        position, is_fixed, is_tied = self._prepared
+        if not self.varies:
+            return self.fixed[np.newaxis, :]
+        values = theta.take(position, axis=1)
+        if is_tied:
+            values *= self.times
+        if is_fixed is not None:
+            values[:, is_fixed] = self.fixed[is_fixed]
+        return values
 
-    @property
+    @cached_property
     def varies(self) -> bool:
         """Whether the parameter vector enters."""
         return bool((self.index >= 0).any())
 
     @cached_property
-    def _is_tied(self) -> bool:
-        return bool((self.times != 1).any())
-
-    @cached_property
-    def _prepared(self) -> tuple[NDArray[np.bool_], NDArray[np.intp], FloatArray]:
-        """Which rows are free, where they stand in the parameter vector, and the fixed values as one row."""
-        return self.index >= 0, np.maximum(self.index, 0), self.fixed[np.newaxis, :]
+    def _prepared(self) -> tuple[NDArray[np.intp], NDArray[np.bool_] | None, bool]:
+        """Where each row stands in the parameter vector, which rows are fixed, None if none is, and whether any is tied."""
+        fixed = self.index < 0
+        return np.maximum(self.index, 0), fixed if fixed.any() else None, bool((self.times != 1).any())
 
 
 def label_meant(column: str, labels: Collection[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.problem.bound import BoundModel
-from skinbayes.problem.observations import Observation, propagated_spread
+from skinbayes.problem.observations import NOISE_WORDS, Observation, propagated_spread
 from skinbayes.problem.pieces import in_pieces
 from skinbayes.statistics.groups import CrossedGroups
 
@@ -134,12 +135,12 @@ class Likelihood:
         return np.where(np.isnan(predicted[0]).any(axis=-1), np.nan, density)
 
     def _pointwise(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
-        density = np.concatenate(
-            [self._of_each(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)],
-            axis=-1,
-        )
         # NaN where the forward model has no answer: samplers count those apart from data that are impossible
-        return np.where(np.isnan(np.concatenate(predicted, axis=-1)), np.nan, density)
+        each = [
+            np.where(np.isnan(f), np.nan, self._of_each(o, inputs, f))
+            for o, f in zip(self._observations, predicted, strict=True)
+        ]
+        return np.concatenate(each, axis=-1) if len(each) > 1 else each[0]
 
     def _left_out(self, theta: FloatArray, block: NDArray[np.intp], count: int) -> FloatArray:
         groups = self.problem.groups
@@ -169,10 +170,8 @@ class Likelihood:
         inputs = self.problem.inputs(theta)
         found = self.problem.evaluate(inputs, deduplicated=self.problem.deduplicated)
         shape = (len(theta), self.problem.conditions.n_rows)
-        return inputs, [np.broadcast_to(found[o.name], shape) for o in self._observations]
-
-    def _arguments(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        return observation.noise_arguments(inputs, self._propagated(observation, inputs))
+        predicted = [found[o.name] for o in self._observations]
+        return inputs, [f if f.shape == shape else np.broadcast_to(f, shape) for f in predicted]
 
     def _propagated(self, observation: Observation, inputs: Mapping[str, FloatArray]) -> FloatArray | None:
         """What the known spread of inputs adds to that of an observation, shape ``(B, N)``; None without one."""
@@ -191,17 +190,36 @@ class Likelihood:
     def _width(
         self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
     ) -> FloatArray:
+        known = self._known_widths.get(observation.name)
+        if known is not None:
+            return np.broadcast_to(known, predicted.shape)
         arguments = observation.width_arguments(inputs, self._propagated(observation, inputs))
-        width = observation.noise.width(predicted, observed=observation.values, **arguments)
-        return np.broadcast_to(width, predicted.shape)
+        return observation.noise.width(predicted, observed=observation.values, **arguments)
+
+    @cached_property
+    def _known_widths(self) -> dict[str, FloatArray]:
+        """Width of logarithmic noise that no parameter changes, by observable, each ``(1, N)``: worked out once."""
+        problem = self.problem
+        if problem.input_spread:
+            return {}
+        free = {entry.name for entry in problem.plan if entry.varies}
+        inputs = problem.inputs(np.full((1, problem.dimension), np.nan))
+        return {
+            o.name: o.noise.width(o.values[np.newaxis], observed=o.values, **o.width_arguments(inputs))
+            for o in self._observations
+            if o.noise.logarithmic and free.isdisjoint(o.key(name) for name in NOISE_WORDS)
+        }
 
     def _of_each(
         self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
     ) -> FloatArray:
         groups = self.problem.groups
         if groups is None:
-            arguments = self._arguments(observation, inputs)
-            return observation.noise.log_density(observation.values, predicted, **arguments)
+            known = self._known_widths.get(observation.name)
+            width = self._width(observation, inputs, predicted) if known is None else known
+            shape = observation.shape_arguments(inputs)
+            with np.errstate(all="ignore"):
+                return observation.noise.log_density_at(observation.values, predicted, width, **shape)
         residual, width, scales, offset = self._residuals(groups, inputs, predicted)
         return groups.log_density_pointwise(residual, width, scales) + offset
 

@@ -41,8 +41,11 @@ class Observation:
         self, inputs: Mapping[str, FloatArray], propagated: FloatArray | None = None
     ) -> dict[str, FloatArray]:
         """Arguments of the noise family from the inputs; ``propagated`` is an uncertainty that adds to the known spread."""
-        shape = {name: inputs[self.key(name)] for name in self.noise.shape_parameters}
-        return self.width_arguments(inputs, propagated) | shape
+        return self.width_arguments(inputs, propagated) | self.shape_arguments(inputs)
+
+    def shape_arguments(self, inputs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        """Those of :meth:`noise_arguments` that set the shape of the noise."""
+        return {name: inputs[self.key(name)] for name in self.noise.shape_parameters}
 
     def width_arguments(
         self, inputs: Mapping[str, FloatArray], propagated: FloatArray | None = None

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import exprel
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.roughness._fields import Floats, as_field, with_axes
+from skinbayes.roughness._fields import Floats, hold_floats, remembering_numbers, with_axes
 from skinbayes.roughness._rules import gauss_unit
 
 
@@ -64,19 +64,70 @@ class PowerSpectrum(Protocol):
     def slope_quadrature(self, saturation: Floats, wavevector: FloatArray | None = None) -> SlopeQuadrature:
         """A rule for ``∫ q³ C f dq`` from q0 to q1, or to each ``wavevector`` (shape ``(..., K)``).
 
-        ``saturation`` (1/m, batch shape) is the wavevector above which f equals 1.
+        ``saturation`` (1/m, batch shape) is the wavevector above which f equals 1. Silences no warnings.
         """
         ...
 
 
-_PLATEAU_NODES, _PLATEAU_WEIGHTS = gauss_unit(12)
-_FRACTAL_NODES, _FRACTAL_WEIGHTS = gauss_unit(36)
-_SPLIT = _PLATEAU_NODES.size
+_PLATEAU, _FRACTAL = gauss_unit(12), gauss_unit(36)
+_ON_PLATEAU = np.arange(48) < 12  # of the nodes
+# shares of the plateau and of the fractal part at each node and weights of both rules, 0 in the other part
+_PLATEAU_NODES, _PLATEAU_WEIGHTS = (np.append(part, np.zeros(36)) for part in _PLATEAU)
+_FRACTAL_NODES, _FRACTAL_WEIGHTS = (np.append(np.zeros(12), part) for part in _FRACTAL)
 
 
 def _power_integral(length: FloatArray, exponent: Floats) -> FloatArray:
     """``∫ exp(exponent · t) dt`` from 0 to ``length``; exact also where the exponent vanishes."""
     return np.asarray(length * exprel(exponent * length))
+
+
+def _unit_moment(exponent: float, hurst: Floats, q0: Floats, q_r: Floats, q1: Floats) -> FloatArray:
+    """``∫ q^exponent C dq / C0`` in closed form."""
+    order = exponent + 1
+    plateau = _power_integral(np.log(q_r / q0), order)
+    fractal = _power_integral(np.log(q1 / q_r), order - 2 - 2 * hurst)
+    # exp and log instead of **, which rounds differently for scalars and arrays
+    return np.asarray(np.exp(order * np.log(q0)) * plateau + np.exp(order * np.log(q_r)) * fractal)
+
+
+class _Form(NamedTuple):
+    """What does not depend on the height of a self-affine surface."""
+
+    mean_square: FloatArray  # 2π ∫ q C dq / C0, 1/m²; nan where the form is impossible
+    fourth_power: FloatArray  # q_r⁴
+    first: FloatArray  # ln(q0/q_r)
+    last: FloatArray  # ln(q1/q_r)
+    slope: FloatArray  # of ln(q⁴C) above q_r, 2 − 2H
+
+
+class _Whole(NamedTuple):
+    """What a plateau that is integrated to its end contributes at each node, see `_plateau`; shapes ``(..., n)``."""
+
+    place: FloatArray
+    measure: FloatArray
+    slope: FloatArray
+
+
+@remembering_numbers
+def _form(hurst: FloatArray, q0: FloatArray, q_r: FloatArray, q1: FloatArray) -> tuple[_Form, _Whole]:
+    with np.errstate(all="ignore"):
+        possible = (hurst > 0) & (hurst <= 1) & (q0 > 0) & (q_r >= q0) & (q1 >= q_r) & (q1 > q0)
+        mean_square = np.where(possible, 2 * np.pi * _unit_moment(1.0, hurst, q0, q_r, q1), np.nan)
+        first, slope = np.log(q0 / q_r), 2 - 2 * hurst
+        form = _Form(mean_square, np.square(np.square(q_r)), first, np.log(q1 / q_r), slope)
+        return form, _Whole(*_plateau(first, 0 * first), _slopes(slope))
+
+
+def _plateau(first: FloatArray, knee: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """ln(q/q_r) at the nodes and their weights in ln q, for a plateau from ``first`` to ``knee`` and no fractal part."""
+    length = (knee - first)[..., None]
+    place = np.where(_ON_PLATEAU, first[..., None], knee[..., None]) + length * _PLATEAU_NODES
+    return place, length * _PLATEAU_WEIGHTS
+
+
+def _slopes(fractal: FloatArray) -> FloatArray:
+    """dln(q⁴C)/dln q at the nodes."""
+    return np.where(_ON_PLATEAU, 4.0, fractal[..., None])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -116,30 +167,20 @@ class SelfAffineSpectrum:
     wavevector_max: Floats
 
     def __post_init__(self) -> None:
-        for name in self.__dataclass_fields__:
-            object.__setattr__(self, name, as_field(getattr(self, name)))
+        hold_floats(self)
 
     @cached_property
     def plateau_power(self) -> FloatArray:
         """C0, the power of the plateau, m^4, batch shape; nan where the parameters are impossible."""
-        q0, q_r, q1 = self.wavevector_min, self.wavevector_rolloff, self.wavevector_max
-        height, hurst = self.rms_height, self.hurst_exponent
         with np.errstate(all="ignore"):
-            mean_square = self._unit_moment(1.0)
-            possible = (
-                (height > 0) & (hurst > 0) & (hurst <= 1) & (q0 > 0) & (q_r >= q0) & (q1 >= q_r) & (q1 > q0)
-            )
-            possible = possible & (height * q1 < np.inf)
-            return np.where(possible, np.square(height) / (2 * np.pi * mean_square), np.nan)
+            return self._plateau_power(self._form()[0])
 
-    def _unit_moment(self, exponent: float) -> FloatArray:
-        """``∫ q^exponent C dq / C0`` in closed form."""
-        q0, q_r, q1 = self.wavevector_min, self.wavevector_rolloff, self.wavevector_max
-        order = exponent + 1
-        plateau = _power_integral(np.log(q_r / q0), order)
-        fractal = _power_integral(np.log(q1 / q_r), order - 2 - 2 * self.hurst_exponent)
-        # exp and log instead of **, which rounds differently for scalars and arrays
-        return np.asarray(np.exp(order * np.log(q0)) * plateau + np.exp(order * np.log(q_r)) * fractal)
+    def _plateau_power(self, form: _Form) -> FloatArray:
+        possible = (self.rms_height > 0.0) & (self.rms_height * self.wavevector_max < np.inf)
+        return np.where(possible, np.square(self.rms_height) / form.mean_square, np.nan)
+
+    def _form(self) -> tuple[_Form, _Whole]:
+        return _form(self.hurst_exponent, self.wavevector_min, self.wavevector_rolloff, self.wavevector_max)
 
     def power(self, wavevector: ArrayLike) -> FloatArray:
         """C(q), Eq. 1 of the paper.
@@ -154,7 +195,8 @@ class SelfAffineSpectrum:
         """
         q = np.asarray(wavevector, dtype=np.float64)
         axes = min(q.ndim, 1)
-        q0, q_r, q1 = self._band(axes)
+        ends = self.wavevector_min, self.wavevector_rolloff, self.wavevector_max
+        q0, q_r, q1 = (with_axes(end, axes) for end in ends)
         plateau = with_axes(self.plateau_power, axes)
         with np.errstate(all="ignore"):
             decay = np.power(np.maximum(q / q_r, 1.0), -2 - 2 * with_axes(self.hurst_exponent, axes))
@@ -164,7 +206,14 @@ class SelfAffineSpectrum:
     def partial_moment(self, exponent: float) -> FloatArray:
         """``∫ q^exponent C(q) dq`` over the band in closed form, batch shape, m^(3 − exponent)."""
         with np.errstate(all="ignore"):
-            return np.asarray(self.plateau_power * self._unit_moment(exponent))[()]
+            moment = _unit_moment(
+                exponent,
+                self.hurst_exponent,
+                self.wavevector_min,
+                self.wavevector_rolloff,
+                self.wavevector_max,
+            )
+            return np.asarray(self.plateau_power * moment)[()]
 
     def slope_quadrature(self, saturation: Floats, wavevector: FloatArray | None = None) -> SlopeQuadrature:
         """A rule for ``∫ q³ C f dq``, see `SlopeQuadrature`.
@@ -181,42 +230,25 @@ class SelfAffineSpectrum:
         rule : shapes ``(..., n)`` and ``(...)``, or ``(..., K, n)`` and ``(..., K)``
         """
         axes = 0 if wavevector is None else 1
-        q0, q_r, q1 = self._band(axes)
-        slope = 2 - 2 * with_axes(self.hurst_exponent, axes)
-        plateau_power, saturation = with_axes(self.plateau_power, axes), with_axes(saturation, axes)
-        with np.errstate(all="ignore"):
-            top = q1 if wavevector is None else np.minimum(np.maximum(wavevector, q0), q1)
-            end = np.maximum(np.minimum(top, saturation), q0)
-            knee = np.minimum(q_r, end)
-            lengths = np.log(knee / q0), np.log(end / knee)
-            starts = np.log(q0 / q_r), np.log(knee / q_r)
-            # ln(q/q_r) at the nodes: those of the plateau, then those of the fractal part
-            log_ratio = np.empty((*np.shape(knee), _SPLIT + _FRACTAL_NODES.size))
-            parts = log_ratio[..., :_SPLIT], log_ratio[..., _SPLIT:]
-            for part, start, length, points in zip(
-                parts, starts, lengths, (_PLATEAU_NODES, _FRACTAL_NODES), strict=True
-            ):
-                np.multiply(length[..., None], points, out=part)
-                part += start[..., None]
-            # ∫ q³ C dq = C0 q_r⁴ ∫ (q/q_r)^κ dln q with κ = 4 on the plateau and 2 − 2H above it
-            scale = plateau_power * np.square(np.square(q_r))
-            weights = np.empty((*np.broadcast_shapes(knee.shape, scale.shape), log_ratio.shape[-1]))
-            np.multiply(parts[0], 4.0, out=weights[..., :_SPLIT])
-            np.multiply(parts[1], slope[..., None], out=weights[..., _SPLIT:])
-            np.exp(weights, out=weights)
-            weights[..., :_SPLIT] *= (scale * lengths[0])[..., None] * _PLATEAU_WEIGHTS
-            weights[..., _SPLIT:] *= (scale * lengths[1])[..., None] * _FRACTAL_WEIGHTS
-            nodes = np.exp(log_ratio)
-            nodes *= q_r[..., None]
-            # f = 1 from ``end`` on
-            turn = np.maximum(np.minimum(q_r, top), end)
-            plateau = np.square(np.square(end / q_r)) * _power_integral(np.log(turn / end), 4.0)
-            fractal = np.exp(slope * np.log(turn / q_r)) * _power_integral(np.log(top / turn), slope)
-            remainder = scale * (plateau + fractal)
+        q_r = with_axes(self.wavevector_rolloff, axes)
+        form, (place, measure, slopes) = self._form()
+        parts = [with_axes(part, axes) for part in form] if axes else form
+        _, fourth_power, first, last, slope = parts
+        # everything in ln(q/q_r)
+        top = last if wavevector is None else np.minimum(np.maximum(np.log(wavevector / q_r), first), last)
+        end = np.maximum(np.minimum(top, np.log(with_axes(saturation, axes) / q_r)), first)
+        # f = 1 from ``end`` on; ``turn`` is where the rest of the plateau ends
+        turn, length = end, end[..., None]
+        if axes or np.count_nonzero(end < 0.0):
+            knee = np.minimum(end, 0.0)
+            (place, measure), slopes = _plateau(first, knee), _slopes(slope)
+            turn, length = np.maximum(np.minimum(top, 0.0), end), (end - knee)[..., None]
+        place = place + length * _FRACTAL_NODES
+        # ∫ q³ C dq = C0 q_r⁴ ∫ (q/q_r)^κ dln q with κ = 4 on the plateau and 2 − 2H above it
+        scale = with_axes(self._plateau_power(form), axes) * fourth_power
+        weights = np.exp(slopes * place) * (scale[..., None] * (measure + length * _FRACTAL_WEIGHTS))
+        remainder = np.exp(slope * turn) * _power_integral(top - turn, slope)
+        if turn is not end:
+            remainder = np.exp(4.0 * end) * _power_integral(turn - end, 4.0) + remainder
+        nodes, remainder = np.exp(place) * q_r[..., None], scale * remainder
         return SlopeQuadrature(nodes, weights, remainder)
-
-    def _band(self, axes: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """q0, q_r, q1 with ``axes`` new last axes."""
-        ends = self.wavevector_min, self.wavevector_rolloff, self.wavevector_max
-        q0, q_r, q1 = (with_axes(end, axes) for end in ends)
-        return q0, q_r, q1

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.statistics.priors import Prior, StackedPriors
+from skinbayes.statistics.priors import IndependentPriors, Prior
 from skinbayes.statistics.transforms import VectorTransform
 
 BatchFunction = Callable[[FloatArray], FloatArray]
@@ -49,10 +48,11 @@ class _Product:
     likelihood: BatchFunction
 
     def __call__(self, theta: FloatArray) -> FloatArray:
-        value = np.array(self.prior(theta), dtype=float)
+        value = self.prior(theta)
         possible = value > -inf  # the likelihood is never asked about parameters that the prior excludes
         if possible.all():
             return value + self.likelihood(theta)
+        value = np.array(value, dtype=float)
         if possible.any():
             value[possible] += self.likelihood(theta[possible])
         return value
@@ -65,27 +65,6 @@ class _Sum:
 
     def __call__(self, theta: FloatArray) -> FloatArray:
         return self.first(theta) + self.second(theta)
-
-
-@dataclass(frozen=True)
-class _Independent:
-    priors: tuple[Prior, ...]
-
-    @cached_property
-    def _blocks(self) -> tuple[tuple[StackedPriors, slice | list[int]], ...]:
-        """Priors of one family together: one NumPy call for each family instead of one for each parameter."""
-        blocks = []
-        for family in dict.fromkeys(prior.family for prior in self.priors):
-            index = [i for i, prior in enumerate(self.priors) if prior.family == family]
-            columns = slice(None) if len(index) == len(self.priors) else index
-            blocks.append((StackedPriors.of([self.priors[i] for i in index]), columns))
-        return tuple(blocks)
-
-    def __call__(self, theta: FloatArray) -> FloatArray:
-        terms = np.empty(theta.shape)
-        for block, columns in self._blocks:
-            terms[:, columns] = block.log_density(theta[:, columns])
-        return np.asarray(terms.sum(axis=1))
 
 
 @dataclass(frozen=True)
@@ -139,7 +118,7 @@ class LogDensity:
     @staticmethod
     def independent(priors: list[Prior] | tuple[Prior, ...]) -> LogDensity:
         """The joint density of D independent priors, normalised."""
-        return LogDensity(_Independent(tuple(priors)))
+        return LogDensity(IndependentPriors(tuple(priors)))
 
     def __call__(self, theta: FloatArray) -> FloatArray:
         """Log-density of each row of ``theta``, shape ``(B,)``."""

@@ -23,6 +23,9 @@ Constants = tuple[float, ...]
 Columns = tuple[float, ...] | tuple[FloatArray, ...]
 """The same for several priors at once: one array for each number."""
 
+Kernel = Callable[[FloatArray, Columns], FloatArray]
+"""Values inside the support, and the numbers of their priors, to log-densities."""
+
 Arguments = tuple[float, ...]
 
 
@@ -70,7 +73,7 @@ class Family:
     description: str
     support: Callable[[Arguments], tuple[float, float]]
     constants: Callable[[Arguments], Constants]
-    kernel: Callable[[FloatArray, Columns], FloatArray]
+    kernel: Kernel
     distribution: Callable[[Arguments], Any]
     closed: bool = True
 

@@ -115,22 +115,31 @@ class NoiseFamily:
         -------
         w, shape ``(B, N)``: unit of the observable, or dimensionless for the logarithmic families
         """
-        f, s, e, d = (np.asarray(value, dtype=float) for value in (predicted, scale, spread, discrepancy))
+        f = np.asarray(predicted, dtype=float)
         with np.errstate(all="ignore"):
-            if self.logarithmic:
-                # an exact datum stays exact where its value is zero
-                known = np.where(
-                    e > 0.0, e / (f if observed is None else np.asarray(observed, dtype=float)), 0.0
-                )
-                variance = s * s + known * known + d * d
-            elif self.relative:
-                variance = (s * s + d * d) * (f * f) + e * e
-            else:
-                variance = s * s + e * e + (d * f) * (d * f)
-            # a negative scale is impossible, not a positive one in disguise
-            return np.broadcast_to(
-                np.where(s >= 0.0, np.sqrt(variance), np.nan), np.broadcast_shapes(f.shape, s.shape)
-            )
+            width = self._width(f, scale, spread, discrepancy, observed)
+        return np.broadcast_to(width, np.broadcast_shapes(f.shape, width.shape))
+
+    def _width(
+        self,
+        f: FloatArray,
+        scale: ArrayLike,
+        spread: ArrayLike,
+        discrepancy: ArrayLike,
+        observed: ArrayLike | None,
+    ) -> FloatArray:
+        """The same, of a shape that broadcasts to ``(B, N)``; silences no warnings."""
+        s, e, d = (np.asarray(value, dtype=float) for value in (scale, spread, discrepancy))
+        if self.logarithmic:
+            # an exact datum stays exact where its value is zero
+            known = np.where(e > 0.0, e / (f if observed is None else np.asarray(observed, dtype=float)), 0.0)
+            variance = s * s + known * known + d * d
+        elif self.relative:
+            variance = (s * s + d * d) * (f * f) + e * e
+        else:
+            variance = s * s + e * e + (d * f) * (d * f)
+        # a negative scale is impossible, not a positive one in disguise
+        return np.where(s >= 0.0, np.sqrt(variance), np.nan)
 
     def log_density(
         self,
@@ -168,18 +177,19 @@ class NoiseFamily:
         [[-0.9189], [-2.9189]]
         """
         y, f = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
-        known = self._shape(shape)
         with np.errstate(all="ignore"):
-            w = self.width(f, scale, spread, discrepancy, y)
-            if self.logarithmic:
-                log_y = np.log(y)
-                value = self.standard_log_density((log_y - np.log(f)) / w, **known) - np.log(w) - log_y
-                possible = (f > 0.0) & (y > 0.0)
-            else:
-                value = self.standard_log_density((y - f) / w, **known) - np.log(w)
-                possible = np.isfinite(f) & np.isfinite(y)
-            possible = possible & (w > 0.0) & (w < inf) & (value < inf)
-        return np.where(possible, value, -inf)
+            return self.log_density_at(y, f, self._width(f, scale, spread, discrepancy, y), **shape)
+
+    def log_density_at(
+        self, observed: FloatArray, predicted: FloatArray, width: FloatArray, **shape: ArrayLike
+    ) -> FloatArray:
+        """:meth:`log_density` for a known width, such as one that no parameter changes; silences no warnings."""
+        known = self._shape(shape)
+        log_y = np.log(observed) if self.logarithmic else 0.0
+        z = ((log_y - np.log(predicted)) if self.logarithmic else (observed - predicted)) / width
+        value = self.standard_log_density(z, **known) - np.log(width) - log_y
+        # z is not finite for all that is impossible but a width without end, whose density is zero
+        return np.where(np.isfinite(z) & (value < inf), value, -inf)
 
     def draw(
         self,
@@ -234,7 +244,7 @@ class NoiseFamily:
 
     def _shape(self, given: Mapping[str, ArrayLike]) -> dict[str, FloatArray]:
         """The shape parameters as arrays, NaN where they are not positive."""
-        if set(given) != set(self.shape_parameters):
+        if given.keys() != set(self.shape_parameters):
             raise TypeError(
                 f"Noise '{self.name}' needs {' and '.join(self.shape_parameters) or 'no shape parameter'}; "
                 f"got {', '.join(given) or 'none'}."

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray, arrays
 from skinbayes.contact import (
     AREA_CORRECTION,
     ElasticSolid,
@@ -306,7 +306,7 @@ class _Solved(NamedTuple):
 
 def cosine_sum(contact_angle_skin: ArrayLike, contact_angle_counterface: ArrayLike) -> FloatArray:
     """cos θ1 + cos θ2; nan for impossible angles."""
-    angles = (np.asarray(x, dtype=np.float64) for x in (contact_angle_skin, contact_angle_counterface))
+    angles = arrays(contact_angle_skin, contact_angle_counterface)
     first, second = (np.cos(np.where((x >= 0) & (x <= np.pi), x, np.nan)) for x in angles)
     # two right angles, or 80 and 100 degrees, sum to 0 but for rounding
     return np.where(np.abs(first + second) < _ROUNDING, 0.0, first + second)
@@ -325,9 +325,7 @@ def _flatten(
 ) -> _Case:
     if closure not in CLOSURES:
         raise InputError(f"closure is {closure!r}, but must be one of {', '.join(map(repr, CLOSURES))}.")
-    films, pressure, tension, gamma = (
-        np.asarray(x, dtype=np.float64) for x in (wanted, nominal_pressure, surface_tension, area_correction)
-    )
+    films, pressure, tension, gamma = arrays(wanted, nominal_pressure, surface_tension, area_correction)
     with np.errstate(all="ignore"):
         wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
         wetting_tension = np.where((tension >= 0) & (tension < np.inf), tension, np.nan) * wetting

@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray, arrays
 from skinbayes.contact import (
     AREA_CORRECTION,
     ElasticSolid,
@@ -173,9 +173,7 @@ def film_contact(
             area_correction,
         )
     ]
-    limit, floor, power = (
-        np.asarray(x, dtype=np.float64) for x in (yield_stress, film_floor, hardening_sharpness)
-    )
+    limit, floor, power = arrays(yield_stress, film_floor, hardening_sharpness)
     dry = None if young_modulus_layer_dry is None else np.asarray(young_modulus_layer_dry, dtype=np.float64)
     half = None if hardening_film is None else np.asarray(hardening_film, dtype=np.float64)
     load, tension, first, second, gamma = arguments

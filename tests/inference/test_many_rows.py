@@ -90,8 +90,8 @@ def test_no_piece_is_larger_than_its_bound() -> None:
 
 def test_equal_rows_are_predicted_once(tmp_path: Path) -> None:
     repeated = load_problem("forearm-glass", data=write_loads(tmp_path / "data.csv", 600, distinct=6))
-    assert repeated.alike is not None
-    assert len(repeated.alike.first) == 6
+    assert repeated.deduplicated is not None
+    assert len(repeated.deduplicated.first) == 6
     theta = vectors(repeated, 5)
     inputs = repeated.inputs(theta)
     every_row = repeated.evaluate(inputs)["friction_coefficient"]
@@ -129,13 +129,13 @@ def test_stress_variance_is_integrated_once_for_rows_of_equal_skin(
     from skinbayes.forward import contact_inputs
 
     asked: list[tuple[int, ...]] = []
-    integral = contact_inputs.twice_stress_variance
+    integral = contact_inputs.integrated
 
     def watched(spectrum: object, skin: object) -> np.ndarray:
         asked.append(np.shape(skin.young_modulus_layer))  # type: ignore[attr-defined]
         return integral(spectrum, skin)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(contact_inputs, "twice_stress_variance", watched)
+    monkeypatch.setattr(contact_inputs, "integrated", watched)
     problem.log_likelihood(vectors(problem, 3))
     assert asked == [(3, 2)]
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pickle
+import runpy
 from dataclasses import FrozenInstanceError
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -217,3 +219,28 @@ def test_starts_are_finite_distinct_and_seeded(shipped):
     assert len(np.unique(first, axis=0)) == 64
     assert_array_equal(first, target.starts(np.random.default_rng(5), 64))
     assert PosteriorTarget(shipped, use_likelihood=False).fingerprint != target.fingerprint
+
+
+# -- the fast way through the physics -----------------------------------------------------------------------------------
+
+
+def test_posterior_of_a_shipped_model_is_that_of_the_public_functions(monkeypatch):
+    """Physics with all its checks, and densities of SciPy; 1e-11 is what a sum of 16 terms up to 1e4 leaves."""
+    folder = Path(__file__).parents[2] / "benchmarks"
+    monkeypatch.syspath_prepend(str(folder))
+    case = runpy.run_path(str(folder / "log_posterior.py"))["Case"]()
+    assert_allclose(case.problem.log_posterior(case.batch), case.plain(case.batch), rtol=1e-12, atol=1e-11)
+
+
+def test_width_of_noise_that_is_fixed_is_that_of_noise_that_is_free(tmp_path):
+    free = two_parameters(tmp_path)
+    fixed = finger(
+        tmp_path,
+        'frictional_shear_stress = { lognormal = ["10 MPa", 1.0] }\nyoung_modulus_layer = "7 MPa"',
+        'family = "lognormal"\nnoise_scale = { fixed = 0.3, source = "given" }',
+    )
+    stress = np.array([[5e6], [2e7], [-1.0]])
+    both = np.concatenate([stress, np.full((3, 1), 0.3)], axis=1)
+    for pointwise in (True, False):
+        assert_array_equal(fixed.log_likelihood(stress, pointwise), free.log_likelihood(both, pointwise))
+    assert_array_equal(fixed.noise_width(stress[0]), free.noise_width(both[0]))
