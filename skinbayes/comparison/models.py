@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,7 +30,6 @@ class ComparedModel:
     Attributes
     ----------
     name : the model
-    log_evidence, log_evidence_se : not computed in this version, None
     elpd_loo, elpd_loo_se : expected log predictive density of left-out data and its standard error
     p_loo : effective number of parameters
     elpd_difference, elpd_difference_se : difference to the best model and its standard error
@@ -41,8 +40,6 @@ class ComparedModel:
     """
 
     name: str
-    log_evidence: float | None
-    log_evidence_se: float | None
     elpd_loo: float
     elpd_loo_se: float
     p_loo: float
@@ -55,8 +52,7 @@ class ComparedModel:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
-        levels = {column: entry.to_dict() for column, entry in self.left_out.items()}
-        return asdict(replace(self, left_out={})) | {"left_out": levels}
+        return vars(self) | {"left_out": {column: entry.to_dict() for column, entry in self.left_out.items()}}
 
 
 @dataclass(frozen=True)
@@ -186,8 +182,6 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
         models.append(
             ComparedModel(
                 name=entry.name,
-                log_evidence=None,
-                log_evidence_se=None,
                 elpd_loo=entry.loo["elpd"],
                 elpd_loo_se=entry.loo["se"],
                 p_loo=entry.loo["p"],

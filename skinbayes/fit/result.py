@@ -175,5 +175,5 @@ class FitResult:
 
         if style not in ("text", "bibtex"):
             raise InputError(f"style: found {style!r}; expected 'text' or 'bibtex'")
-        known = [Reference.from_dict(entry) for entry in self.provenance["references"]]
+        known = [Reference(**entry) for entry in self.provenance["references"]]
         return [reference.text() if style == "text" else reference.bibtex() for reference in known]
