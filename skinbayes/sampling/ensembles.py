@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import EnsembleState, EnsembleSteps
+from skinbayes.sampling.advance import EnsembleState, EnsembleSteps, advance
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
@@ -19,7 +20,7 @@ from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
-from skinbayes.sampling.workers import advancing
+from skinbayes.sampling.workers import sharing_out
 
 
 class SamplingInterrupted(KeyboardInterrupt):
@@ -76,8 +77,9 @@ def run_ensembles(
     report: StoppingReport | None = None
     states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
     resumed, spent = len(rounds), 0.0
+    step = partial(advance, target, steps=options.block_steps, vectorize=options.vectorize, moves=moves)
     try:
-        with advancing(target, options, moves) as advance_all:
+        with sharing_out(step, min(options.cores, options.ensembles)) as advance_all:
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
