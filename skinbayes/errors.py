@@ -18,6 +18,15 @@ class InputError(ValueError):
     The message is one or two plain sentences, or a list of them for a file with several faults: where (file, line, row,
     column or parameter), what was found, and what was expected, in its unit. The command line prints it as it is and
     exits with status 2.
+
+    Examples
+    --------
+    >>> import skinbayes as sb
+    >>> try:
+    ...     sb.load_problem("forearm-glas")
+    ... except sb.InputError as error:
+    ...     print(str(error)[:60])
+    no model 'forearm-glas'. Did you mean 'forearm-glass'? Shipp
     """
 
 

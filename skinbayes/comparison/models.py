@@ -146,11 +146,25 @@ def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | 
     refit : sample a model anew without a level of a grouping column where importance sampling cannot leave it out
     progress : called before the first and after every refit of a model, with the number done and their total
 
+    Returns
+    -------
+    Comparison
+        Models, best first, with predictive densities (ln, of data in SI), stacking weights, and sentences.
+
     Raises
     ------
     InputError
         Fewer than two fits, fits of different data (another table, other rows or another observable), or a refit is needed
         of a fit whose model or data are not at hand.
+
+    Examples
+    --------
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-water")
+    >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 500))
+    >>> compared = sb.compare([fit, fit])
+    >>> compared.rows, [model.elpd_difference for model in compared.models]
+    (11, [0.0, 0.0])
     """
     if len(fits) < 2:
         raise InputError(f"{len(fits)} run given; a comparison needs at least two")

@@ -39,6 +39,7 @@ class PriorUpdate:
         """Posterior over prior standard deviation."""
         return float(np.sqrt(max(0.0, 1.0 - self.contraction)))
 
+
 def prior_updates(
     names: Sequence[str],
     prior_draws: FloatArray,
@@ -98,7 +99,6 @@ class Ridge:
     correlation: float
     exponent: float
     logarithmic: bool
-
 
 
 def ridges(

@@ -39,6 +39,11 @@ def load_fit(path: str | Path) -> Fit:
     ----------
     path : a netCDF file written by :meth:`Fit.save`, or a run directory written by ``skinbayes fit``
 
+    Returns
+    -------
+    Fit
+        With its problem, where model and data are at hand.
+
     Raises
     ------
     InputError
@@ -49,6 +54,18 @@ def load_fit(path: str | Path) -> Fit:
     RepairWarning
         The model cannot be built again, as after a change of skinbayes: the fit has no ``problem``. Or the table of the
         run, which is not read, was changed.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import numpy as np
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-water")
+    >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 100))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     again = load_fit(fit.save(pathlib.Path(folder) / "fit.nc"))
+    >>> np.array_equal(again.theta(), fit.theta())
+    True
     """
     path = Path(path)
     run = path if path.is_dir() else None

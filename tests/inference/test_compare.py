@@ -128,9 +128,7 @@ def test_stacking_of_far_away_densities(shift: float) -> None:
 def model(
     name: str, difference: float, error: float, unreliable: int = 0, converged: bool = True
 ) -> ComparedModel:
-    return ComparedModel(
-        name, -5.0 + difference, 1.0, 2.0, difference, error, 0.5, unreliable, converged
-    )
+    return ComparedModel(name, -5.0 + difference, 1.0, 2.0, difference, error, 0.5, unreliable, converged)
 
 
 @pytest.mark.parametrize(

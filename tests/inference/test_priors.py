@@ -171,7 +171,9 @@ def test_refusals_say_what_was_expected(family, arguments, words):
 def test_truncation_renormalises(family, arguments, lower, upper):
     whole = make_prior(family, arguments)
     cut = whole.truncated(lower, upper)
-    mass, _ = integrate.quad(lambda x: float(np.exp(whole.log_density(x))), cut.lower, cut.upper, epsrel=1e-12)
+    mass, _ = integrate.quad(
+        lambda x: float(np.exp(whole.log_density(x))), cut.lower, cut.upper, epsrel=1e-12
+    )
     low, high = (cut.quantile(q) for q in (1e-6, 1 - 1e-6))
     area, _ = integrate.quad(lambda x: float(np.exp(cut.log_density(x))), low, high, epsrel=1e-10, limit=200)
     assert area == pytest.approx(1 - 2e-6, abs=1e-8)
