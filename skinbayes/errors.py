@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import warnings
 from pathlib import Path
 
 NO_SPACE = frozenset(getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG") if hasattr(errno, name))
@@ -39,6 +40,11 @@ class RepairWarning(UserWarning):
 
     The run goes on; the command line prints the message as it is on standard error.
     """
+
+
+def warn_of_repair(message: str) -> None:
+    """Say what was damaged in a run and what was done about it."""
+    warnings.warn(message, RepairWarning, stacklevel=3)
 
 
 class MachineError(RuntimeError):

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.arrays import ArrayLike
+from skinbayes.atomic import write_atomically
+from skinbayes.fit.netcdf import result_image
 from skinbayes.fit.result import FitResult
-from skinbayes.fit.saving import save_fit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -106,7 +107,8 @@ class Fit(FitResult):
         >>> again.names == fit.names
         True
         """
-        return save_fit(self, Path(path))
+        write_atomically(Path(path), result_image(self.groups, self.provenance))
+        return Path(path)
 
     def plot_data(self, width: str | None = None) -> Figure:
         """Data and model against the condition that varies: load, speed, humidity, time.

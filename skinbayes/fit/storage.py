@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes.errors import InputError, RepairWarning
+from skinbayes.errors import InputError, warn_of_repair
 from skinbayes.fit.fit import Fit
 from skinbayes.fit.manifest import (
     BASELINE_MODELS,
@@ -92,7 +91,7 @@ def load_fit(path: str | Path) -> Fit:
                 f"{file}: not the result of this run, or changed since (its sha256 is not the one in {RUN}){steps}"
             )
         if (table := run / SUMMARY).is_file() and file_digest(table) != manifest.files.get(SUMMARY):
-            _warn(
+            warn_of_repair(
                 f"{table}: damaged, or changed since the run was made; the numbers of the run are in {file}"
             )
     provenance = dict(provenance)
@@ -130,10 +129,6 @@ def _undamaged(run: Path) -> Manifest:
     return manifest
 
 
-def _warn(message: str) -> None:
-    warnings.warn(message, RepairWarning, stacklevel=3)
-
-
 def _rebuild(
     file: Path, run: Path | None, manifest: Manifest | None, provenance: Mapping[str, Any]
 ) -> Problem | None:
@@ -154,7 +149,7 @@ def _rebuild(
     except (InputError, OSError, ValueError, KeyError) as error:
         reason = str(error)
     copies = "" if run is None else " from the undamaged copies of model and data"
-    _warn(
+    warn_of_repair(
         f"{run or file}: the model cannot be built again{copies} ({reason}). "
         "The numbers are read as they were computed; what needs the model is left out"
     )

@@ -47,7 +47,7 @@ def run_ensembles(
     """Sample a target until the stopping rule is met or ``max_steps`` are made.
 
     The draws depend on the target, ``options.seed``, the numbers of ensembles and walkers and the moves alone. They are
-    the same to the last bit with any number of cores, vectorised or not (if the target treats rows alike), and
+    the same to the last bit with any number of cores, and
     whether or not the run was interrupted and resumed; where it stops depends on the number of steps alone.
 
     Parameters
@@ -77,7 +77,7 @@ def run_ensembles(
     report: StoppingReport | None = None
     states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
     resumed, spent = len(rounds), 0.0
-    step = partial(advance, target, steps=options.block_steps, vectorize=options.vectorize, moves=moves)
+    step = partial(advance, target, steps=options.block_steps, moves=moves)
     try:
         with sharing_out(step, min(options.cores, options.ensembles)) as advance_all:
             while True:

@@ -65,8 +65,15 @@ def test_an_ensemble_does_not_depend_on_how_many_others_there_are(serial):
     assert np.array_equal(fewer.positions, serial.positions[:2])
 
 
+class RowByRow(UnitGaussian):
+    """A density that is asked for each walker by itself."""
+
+    def log_density(self, position):
+        return np.concatenate([super(RowByRow, self).log_density(row[np.newaxis]) for row in position])
+
+
 def test_walker_by_walker_is_vectorised(serial):
-    assert same(serial, run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, vectorize=False, **SHORT)))
+    assert same(serial, run_ensembles(RowByRow(3), SamplerOptions(seed=4, **SHORT)))
 
 
 def test_processes_are_serial(serial):
@@ -104,7 +111,7 @@ def test_nan_and_infinity_count_as_impossible():
     assert np.isfinite(chains.log_density).all()
     assert np.abs(chains.positions[..., 0]).max() <= 2.0
     assert chains.invalid > 0
-    density = Density(Faulty(2), vectorize=True)
+    density = Density(Faulty(2))
     value = density(np.array([[3.0, 0.0], [-3.0, 0.0], [0.0, 0.0]]))
     assert value.tolist() == [-np.inf, -np.inf, 0.0]
     assert (density.evaluations, density.invalid) == (3, 2)

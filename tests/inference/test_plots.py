@@ -191,7 +191,7 @@ def test_profile_of_many_rows_shows_lowest_middle_and_highest() -> None:
 
 def test_profile_without_problem_is_a_sentence() -> None:
     fit = replace(short_fit("forearm-glass"), problem=None)
-    assert "no curve can be computed" in texts(plot_profile(fit)).replace("\n", " ")
+    assert "nothing can be computed" in texts(plot_profile(fit)).replace("\n", " ")
 
 
 @pytest.mark.parametrize("text", ["$x", "a$b$c", r"\frac{", "σ_f/(E0 s)", "x_$y$", "E0 $", "^_", "$$"])
