@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.phrases import and_list, plural
-from skinbayes.plot.numbers import interval, number, percent, quantity
+from skinbayes.phrases import and_list, number, percent, plural
+from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.rows import effect_draws, group_columns
 from skinbayes.statistics.noise_families import noise_family

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.diagnose.rule import MUCH, SOMETHING, UNCHANGED
-from skinbayes.plot.numbers import fraction, interval, number, percent, quantity
+from skinbayes.phrases import number, percent
+from skinbayes.plot.numbers import fraction, interval, quantity
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.opening import is_scatter

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from skinbayes.phrases import sample_size
-from skinbayes.plot.numbers import interval, number, quantity
+from skinbayes.phrases import number, sample_size
+from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.vocabulary import lookup
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import EnsembleState, EnsembleSteps, advance
+from skinbayes.sampling.advance import EnsembleSteps, advance
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
@@ -85,7 +85,11 @@ def run_ensembles(
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
                     report = _judged(target, options, rounds)
                 if progress is not None:
-                    progress(_progress(steps, last, report, options, states, spent, len(rounds) - resumed))
+                    made = (len(rounds) - resumed) * options.block_steps
+                    walkers = sum(len(state.positions) for state in states)
+                    far = sum(left_behind(state.log_density, len(target.names)).sum() for state in states)
+                    pace = spent / made if made else None
+                    progress(EnsembleProgress(steps, last, report, options, walkers, int(far), pace))
                 if report is not None and (report.converged or steps >= last):
                     if store is not None:
                         store.complete()
@@ -129,27 +133,6 @@ def draw_identity(
         "sampler option block_steps": options.block_steps,
         "moves": f"{moves.__module__}.{moves.__qualname__}",
     }
-
-
-def _progress(
-    steps: int,
-    last: int,
-    report: StoppingReport | None,
-    options: SamplerOptions,
-    states: list[EnsembleState],
-    spent: float,
-    blocks: int,
-) -> EnsembleProgress:
-    dimension = states[0].positions.shape[1]
-    return EnsembleProgress(
-        steps=steps,
-        max_steps=last,
-        report=report,
-        options=options,
-        walkers=sum(len(state.positions) for state in states),
-        far_walkers=sum(int(left_behind(state.log_density, dimension).sum()) for state in states),
-        seconds_per_step=spent / (blocks * options.block_steps) if blocks else None,
-    )
 
 
 def _judged(target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]]) -> StoppingReport:

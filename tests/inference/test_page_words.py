@@ -13,7 +13,8 @@ from made_up_fit import made_up_fit
 from skinbayes.diagnose import identify
 from skinbayes.diagnose.rule import verdict
 from skinbayes.fit import Fit
-from skinbayes.plot.numbers import fraction, interval, percent
+from skinbayes.phrases import percent
+from skinbayes.plot.numbers import fraction, interval
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import digest, opening, quality, remarks, sentences
 from skinbayes.report.tables import derived_rows

@@ -14,6 +14,7 @@ from scipy import stats
 
 import skinbayes.plot
 from skinbayes.fit import Fit, sample
+from skinbayes.phrases import number
 from skinbayes.plot import (
     plot_corner,
     plot_predictive,
@@ -22,7 +23,7 @@ from skinbayes.plot import (
     plot_profile,
     plot_trace,
 )
-from skinbayes.plot.numbers import number, quantity
+from skinbayes.plot.numbers import quantity
 from skinbayes.plot.predictive import observed_values
 from skinbayes.plot.prior_posterior import smooth_density
 from skinbayes.plot.scales import round_values
