@@ -98,9 +98,9 @@ def test_block_length_does_not_change_draws(serial):
 def test_pieces_of_a_block_are_the_block():
     target = UnitGaussian(3)
     start = initial_states(target, SamplerOptions(seed=4, **SHORT))[0]
-    whole = advance(target, start, 10, True, default_moves)
-    first = advance(target, start, 3, True, default_moves)
-    second = advance(target, first.end, 7, True, default_moves)
+    whole = advance(target, start, 10, default_moves)
+    first = advance(target, start, 3, default_moves)
+    second = advance(target, first.end, 7, default_moves)
     assert np.array_equal(whole.positions, np.concatenate((first.positions, second.positions)))
     assert np.array_equal(whole.random_state[1], second.random_state[1])
     assert whole.random_state[2:] == second.random_state[2:]
