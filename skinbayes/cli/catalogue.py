@@ -155,7 +155,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
 
 
 def _read(name: str) -> tuple[Provenance | None, CsvTable]:
-    from skinbayes.files.dataset import find_dataset
+    from skinbayes.files.find_dataset import find_dataset
     from skinbayes.files.provenance import load_provenance
     from skinbayes.files.table import read_table
 

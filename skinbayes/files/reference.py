@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import find_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
 from skinbayes.files.table import quoted, read_table
 from skinbayes.units import NUMBER

@@ -77,6 +77,13 @@ def sample(
     -----
     RepairWarning
         Files of the run to be resumed were damaged or missing, and what was done about it.
+
+    Examples
+    --------
+    >>> import skinbayes as sb
+    >>> fit = sb.sample(sb.load_problem("finger-water"), max_steps=100, ensembles=2, walkers=16)
+    >>> fit.converged, fit.provenance["sampling"]["steps"]
+    (False, 100)
     """
     from skinbayes.sampling.engines import ENGINES, find_engine, options_for, register_engine
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Data, Dataset, as_dataset, find_dataset
+from skinbayes.files.dataset import Data, Dataset, as_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import RESERVED_NAMES
 from skinbayes.forward import ForwardModel

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import find_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import label_column
 from skinbayes.files.table import read_table

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import EnsembleState, EnsembleSteps
+from skinbayes.sampling.advance import EnsembleSteps, advance
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
@@ -19,7 +20,7 @@ from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
-from skinbayes.sampling.workers import advancing
+from skinbayes.sampling.workers import sharing_out
 
 
 class SamplingInterrupted(KeyboardInterrupt):
@@ -46,7 +47,7 @@ def run_ensembles(
     """Sample a target until the stopping rule is met or ``max_steps`` are made.
 
     The draws depend on the target, ``options.seed``, the numbers of ensembles and walkers and the moves alone. They are
-    the same to the last bit with any number of cores, vectorised or not (if the target treats rows alike), and
+    the same to the last bit with any number of cores, and
     whether or not the run was interrupted and resumed; where it stops depends on the number of steps alone.
 
     Parameters
@@ -76,14 +77,19 @@ def run_ensembles(
     report: StoppingReport | None = None
     states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
     resumed, spent = len(rounds), 0.0
+    step = partial(advance, target, steps=options.block_steps, moves=moves)
     try:
-        with advancing(target, options, moves) as advance_all:
+        with sharing_out(step, min(options.cores, options.ensembles)) as advance_all:
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
                     report = _judged(target, options, rounds)
                 if progress is not None:
-                    progress(_progress(steps, last, report, options, states, spent, len(rounds) - resumed))
+                    made = (len(rounds) - resumed) * options.block_steps
+                    walkers = sum(len(state.positions) for state in states)
+                    far = sum(left_behind(state.log_density, len(target.names)).sum() for state in states)
+                    pace = spent / made if made else None
+                    progress(EnsembleProgress(steps, last, report, options, walkers, int(far), pace))
                 if report is not None and (report.converged or steps >= last):
                     if store is not None:
                         store.complete()
@@ -127,27 +133,6 @@ def draw_identity(
         "sampler option block_steps": options.block_steps,
         "moves": f"{moves.__module__}.{moves.__qualname__}",
     }
-
-
-def _progress(
-    steps: int,
-    last: int,
-    report: StoppingReport | None,
-    options: SamplerOptions,
-    states: list[EnsembleState],
-    spent: float,
-    blocks: int,
-) -> EnsembleProgress:
-    dimension = states[0].positions.shape[1]
-    return EnsembleProgress(
-        steps=steps,
-        max_steps=last,
-        report=report,
-        options=options,
-        walkers=sum(len(state.positions) for state in states),
-        far_walkers=sum(int(left_behind(state.log_density, dimension).sum()) for state in states),
-        seconds_per_step=spent / (blocks * options.block_steps) if blocks else None,
-    )
 
 
 def _judged(target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]]) -> StoppingReport:

@@ -62,7 +62,6 @@ class SamplerOptions(EngineOptions):
     steps_over_tau : kept steps, summed over the ensembles, must reach this many autocorrelation times
     max_steps : steps of each ensemble after which the run ends, converged or not (a total: resuming does not add)
     block_steps : steps between two writes to the store
-    vectorize : evaluate half an ensemble in one call, else walker by walker
 
     Examples
     --------
@@ -78,7 +77,6 @@ class SamplerOptions(EngineOptions):
     steps_over_tau: float = 50.0
     max_steps: int = 10_000
     block_steps: int = 100
-    vectorize: bool = True
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -1,68 +1,57 @@
-"""Ensembles advanced in this process or shared out to several."""
+"""Pieces of work done in this process or shared out to several."""
 
 from __future__ import annotations
 
 import multiprocessing
 import pickle
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
-from typing import TypeAlias
+from typing import Any, TypeVar
 
 from skinbayes.errors import MachineError
-from skinbayes.sampling.advance import EnsembleState, EnsembleSteps, advance
-from skinbayes.sampling.moves import MoveFactory
-from skinbayes.sampling.options import SamplerOptions
-from skinbayes.sampling.target import Target
 
-Advance: TypeAlias = Callable[[list[EnsembleState]], list[EnsembleSteps]]
-"""Moves every ensemble one block further."""
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 
 @contextmanager
-def advancing(target: Target, options: SamplerOptions, moves: MoveFactory) -> Iterator[Advance]:
-    """Provide what moves all ensembles one block further, with ``options.cores`` processes.
+def sharing_out(
+    work: Callable[[Task], Result], processes: int
+) -> Iterator[Callable[[Sequence[Task]], list[Result]]]:
+    """Provide what does several tasks, in this process if it is the only one.
 
-    Worker processes get the target once and end with this process, however it ends.
+    Worker processes get ``work`` once and end with this process, however it ends.
 
     Parameters
     ----------
-    target : the density; must be picklable if there is more than one core
-    options : cores, block length and how to evaluate
-    moves : builds the proposals
+    work : does one task, as a function of the task alone; must be picklable if there is more than one process
+    processes : how many share the tasks
 
     Yields
     ------
-    a function of the states that returns the blocks in the same order
+    a function of the tasks that returns their results in the same order
     """
-    count = min(options.cores, options.ensembles)
-    if count == 1:
-        yield lambda states: [
-            advance(target, state, options.block_steps, options.vectorize, moves) for state in states
-        ]
+    if processes == 1:
+        yield lambda tasks: [work(task) for task in tasks]
         return
     crew: list[_Worker] = []
     try:
-        for _ in range(count):
-            crew.append(_Worker((target, options.block_steps, options.vectorize, moves)))
-        yield lambda states: _share_out(crew, states)
+        for _ in range(processes):
+            crew.append(_Worker(work))
+        yield lambda tasks: _share_out(crew, tasks)
     finally:
         for worker in crew:
             worker.stop()
 
 
 class _Worker:
-    """A process that advances ensembles; one that dies is started again, once, and gets the same ensemble.
+    """A process that does tasks; one that dies is started again, once, and gets the same task."""
 
-    Parameters
-    ----------
-    task : arguments of :func:`advance` but for the state
-    """
-
-    def __init__(self, task: tuple[Target, int, bool, MoveFactory]) -> None:
-        self._task = task
-        self._state: tuple[int, EnsembleState] | None = None
+    def __init__(self, work: Callable[[Any], Any]) -> None:
+        self._work = work
+        self._task: tuple[int, Any] | None = None
         self._died = False
         self._start()
 
@@ -73,30 +62,30 @@ class _Worker:
             multiprocessing.get_context("forkserver") if forkserver else multiprocessing.get_context("spawn")
         )
         self.connection, there = context.Pipe()
-        self._process = context.Process(target=_serve, args=(there, *self._task), daemon=True)
+        self._process = context.Process(target=_serve, args=(there, self._work), daemon=True)
         with _interrupts_held_back():
             self._process.start()
         there.close()
 
-    def send(self, index: int, state: EnsembleState) -> None:
-        """Give it an ensemble to advance."""
-        self._state = index, state
+    def send(self, index: int, task: Any) -> None:
+        """Give it a task to do."""
+        self._task = index, task
         try:
-            self.connection.send(self._state)
+            self.connection.send(self._task)
         except OSError:
             self._again()
 
-    def receive(self) -> tuple[int, EnsembleSteps | Exception] | None:
-        """The number of the ensemble and its block; None if it died and begins anew."""
+    def receive(self) -> tuple[int, Any] | None:
+        """The number of the task and its result, or the error that it raised; None if it died and begins anew."""
         try:
-            reply: tuple[int, EnsembleSteps | Exception] = self.connection.recv()
+            reply: tuple[int, Any] = self.connection.recv()
         except (EOFError, OSError):
             self._again()
             return None
         return reply
 
     def _again(self) -> None:
-        """Start the process once more, with the ensemble it was to advance: a block depends on its state alone."""
+        """Start the process once more, with the task it was to do: a result depends on its task alone."""
         if self._died:
             raise MachineError(
                 "A worker process of the sampler died twice, perhaps for want of memory: fewer --cores need less. "
@@ -105,8 +94,8 @@ class _Worker:
         self._died = True
         self.stop()
         self._start()
-        if self._state is not None:
-            self.send(*self._state)
+        if self._task is not None:
+            self.send(*self._task)
 
     def stop(self) -> None:
         """End the process."""
@@ -128,15 +117,15 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _serve(connection: Connection, target: Target, steps: int, vectorize: bool, moves: MoveFactory) -> None:
-    """Advance ensembles as they are sent, until the other end closes."""
+def _serve(connection: Connection, work: Callable[[Any], Any]) -> None:
+    """Do tasks as they are sent, until the other end closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    reply: tuple[int, EnsembleSteps | Exception]
     try:
         while True:
-            index, state = connection.recv()
+            index, task = connection.recv()
+            reply: tuple[int, Any]
             try:
-                reply = index, advance(target, state, steps, vectorize, moves)
+                reply = index, work(task)
             except Exception as error:
                 reply = index, _portable(error)
             connection.send(reply)
@@ -152,10 +141,10 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[EnsembleSteps]:
-    """Give each free worker the next ensemble; which worker does what does not change the result."""
-    waiting = list(enumerate(states))[::-1]
-    blocks: dict[int, EnsembleSteps] = {}
+def _share_out(crew: list[_Worker], tasks: Sequence[Any]) -> list[Any]:
+    """Give each free worker the next task; which worker does what does not change the result."""
+    waiting = list(enumerate(tasks))[::-1]
+    results: dict[int, Any] = {}
     busy = crew[: len(waiting)]
     for worker in busy:
         worker.send(*waiting.pop())
@@ -168,9 +157,9 @@ def _share_out(crew: list[_Worker], states: list[EnsembleState]) -> list[Ensembl
             index, result = reply
             if isinstance(result, Exception):
                 raise result
-            blocks[index] = result
+            results[index] = result
             if waiting:
                 worker.send(*waiting.pop())
             else:
                 busy.remove(worker)
-    return [blocks[index] for index in range(len(states))]
+    return [results[index] for index in range(len(tasks))]
