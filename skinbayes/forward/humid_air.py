@@ -10,6 +10,7 @@ infinite yield stress, the default, the area is the elastic one of Fig. 16.
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +21,9 @@ from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profi
 from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
+    PRESSURE_AND_SLOPE,
     SOLID_INPUTS,
     nominal_pressure_of,
-    pressure_and_slope,
     skin_of,
     spectrum_of,
 )
@@ -74,17 +75,18 @@ def _with_pressing(inputs: Inputs) -> dict[str, FloatArray]:
 
 
 def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
+    water: Any = {
+        name: inputs[name] for name in ("contact_angle_skin", "contact_angle_counterface", "area_correction")
+    }
     state = capillary_state_in_humid_air(
         humidity,
         inputs["temperature"],
         nominal_pressure=inputs["nominal_pressure"],
         spectrum=spectrum_of(inputs, tables),
         skin=skin_of(inputs),
-        contact_angle_skin=inputs["contact_angle_skin"],
-        contact_angle_counterface=inputs["contact_angle_counterface"],
-        area_correction=inputs["area_correction"],
         closure=closure,
         count=False,
+        **water,
     )
     return {"capillary_pressure": np.asarray(state.capillary_pressure)}
 
@@ -211,9 +213,7 @@ def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
         explain=partial(_explain, closure=closure),
         flags=partial(_flags, closure=closure),
         flag_meanings=FLAGS,
-        derived=pressure_and_slope,
-        derived_names=("nominal_pressure", "rms_slope"),
-        blocks=("rms_slope",),
+        **PRESSURE_AND_SLOPE,
         profiles=_profiles(closure),
     )
 

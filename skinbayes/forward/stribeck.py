@@ -17,6 +17,7 @@ from skinbayes.forward.contact_inputs import (
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     FLAGS,
+    SPEED_ALTERNATIVES,
     curve_of,
     solve,
     speed_viscosity_product_of,
@@ -24,9 +25,6 @@ from skinbayes.forward.stribeck_direct import (
 from skinbayes.forward.stribeck_table import prepare
 from skinbayes.lubrication import LARGEST_STRAIN, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
 from skinbayes.roughness import rms_slope
-
-SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
-"""How the abscissa can be given; the first complete alternative is used."""
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

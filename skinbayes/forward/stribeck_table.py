@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Progress, Stored, Unfinished, cached
-from skinbayes.forward.base import Inputs, Ranges, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
+from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     film_flags,
@@ -34,9 +35,6 @@ from skinbayes.lubrication import (
     tabulated_friction_of_liquids,
 )
 from skinbayes.roughness import rms_height
-
-if TYPE_CHECKING:
-    from skinbayes.forward.base import ForwardModel
 
 AFTERWARDS = (
     "frictional_shear_stress", "velocity_shift_factor", "additive_friction", "speed_viscosity_product", "viscosity",
@@ -137,8 +135,6 @@ def prepare(
             f"{' and '.join(varying)} {'varies' if len(varying) == 1 else 'vary'}.",
         )
     fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
-    from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
-
     spectrum = spectrum_of(fixed, tables)
     held = {name: ranges[name] for name in _HELD if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
