@@ -26,10 +26,11 @@ from skinbayes.lubrication import (
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
     FilmTable,
+    FilmTablePlan,
     FlowCurve,
     LiquidRows,
+    LubricatedBalls,
     build_film_table,
-    film_table_key,
     liquid_rows,
     tabulated_friction,
     tabulated_friction_of_liquids,
@@ -83,21 +84,21 @@ class TabulatedStribeck:
         parameters = {name: inputs[name] for name in _HELD if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
-        others: Any = {
-            "parameters": parameters,
-            "frictional_shear_stress": inputs["frictional_shear_stress"],
-            "velocity_shift_factor": inputs["velocity_shift_factor"],
-            "everything": True,
-            "thickest_film": limit_of(inputs, "inlet_film_limit"),
-            "largest_strain": limit_of(inputs, "strain_limit"),
-        }
+        balls = LubricatedBalls(
+            parameters=parameters,
+            frictional_shear_stress=inputs["frictional_shear_stress"],
+            velocity_shift_factor=inputs["velocity_shift_factor"],
+            everything=True,
+            thickest_film=limit_of(inputs, "inlet_film_limit"),
+            largest_strain=limit_of(inputs, "strain_limit"),
+        )
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
-            friction = tabulated_friction(self.table, products, **others)
+            friction = tabulated_friction(self.table, products, balls)
             unmeasured = np.zeros(friction.friction_coefficient.shape)
         else:
             friction, liquid = tabulated_friction_of_liquids(
-                self.table, inputs["sliding_speed"], liquids=_liquids(tables.flow_curves), **others
+                self.table, inputs["sliding_speed"], balls, liquids=_liquids(tables.flow_curves)
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
@@ -138,23 +139,16 @@ def prepare(
     spectrum = spectrum_of(fixed, tables)
     held = {name: ranges[name] for name in _HELD if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
-    fixed_for_table: Any = {
+    numbers: Any = {
         name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
-    } | {"largest_strain": float(fixed["strain_limit"])}
+    }
+    plan = FilmTablePlan(held, spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
 
     def build(unfinished: Unfinished) -> Stored:
-        table = build_film_table(
-            held, spectrum, **fixed_for_table, processes=cores, progress=progress, kept=unfinished
-        )
-        return table.to_arrays()
+        return build_film_table(plan, processes=cores, progress=progress, kept=unfinished).to_arrays()
 
-    stored = cached(
-        "stribeck",
-        film_table_key(held, spectrum, **fixed_for_table),
-        build,
-    )
-    table = FilmTable.from_arrays(*stored)
+    table = FilmTable.from_arrays(*cached("stribeck", plan.key(), build))
     tabulated = TabulatedStribeck(table, names)
     middle, far, worst = (100 * float(error) for error in table.held_out)
     return replace(

@@ -20,9 +20,19 @@ from skinbayes.lubrication._uniform_spline import (
 )
 from skinbayes.lubrication.film_axes import Scales, film_scales
 from skinbayes.lubrication.film_reference import SmoothFilms
-from skinbayes.lubrication.film_table import ANCHORS, FASTEST, SLOWEST, FilmTable
+from skinbayes.lubrication.film_table import (
+    ANCHORS,
+    BOUNDARY,
+    CENTRAL,
+    COUETTE,
+    FASTEST,
+    FRACTION,
+    MINIMUM,
+    PRESSURE_FLOW,
+    SLOWEST,
+    FilmTable,
+)
 
-CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
 _REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
 _POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""

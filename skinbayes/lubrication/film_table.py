@@ -18,6 +18,9 @@ from skinbayes.lubrication.film_reference import SmoothFilms
 VERSION = 1
 """Of what the numbers in a table mean; tables of another version are refused."""
 
+CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
+"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load fraction of asperities."""
+
 ANCHORS = 2
 """Numbers before the outputs of a material: ln λ that speeds are counted from, and the unit of ln λ."""
 

@@ -15,7 +15,7 @@ import pytest
 from small_film_tables import RANGES
 
 from skinbayes.emulation import Tasks
-from skinbayes.lubrication import FilmTable, build_film_table
+from skinbayes.lubrication import FilmTable, FilmTablePlan, build_film_table
 from skinbayes.roughness import named_surface
 
 COUNTS = {"young_modulus_bulk": 2, "rms_height": 2, "normal_force": 2}
@@ -40,10 +40,10 @@ class Memory:
 
 def small(kept: Memory | None = None, count: list[int] | None = None) -> FilmTable:
     told = [] if count is None else count
-    return build_film_table(
-        RANGES, named_surface("paper_reference"), counts=COUNTS, speeds=8, nodes=32, checked=3, kept=kept,
-        progress=lambda done, total: told.append(done),
-    )  # fmt: skip
+    plan = FilmTablePlan(
+        RANGES, named_surface("paper_reference"), counts=COUNTS, speeds=8, nodes=32, checked=3
+    )
+    return build_film_table(plan, kept=kept, progress=lambda done, total: told.append(done))
 
 
 @pytest.mark.parametrize("patience", [0, 9, 18])
