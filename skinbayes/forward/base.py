@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -44,6 +45,13 @@ class Tables:
         if self.flow_curves is None:
             return self
         return Tables(self.spectrum, (self.flow_curves[row],))
+
+    def digest(self) -> str | None:
+        """What tells one spectrum from another in the key of a table that is kept; None without a spectrum."""
+        if self.spectrum is None:
+            return None
+        parts = (self.spectrum.wavevector, self.spectrum.node_power, self.spectrum.scale)
+        return hashlib.sha256(np.concatenate([np.ravel(x) for x in parts]).tobytes()).hexdigest()
 
 
 @dataclass(frozen=True)

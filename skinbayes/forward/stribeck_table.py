@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.emulation import Progress, Stored, Unfinished, cached
+from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
 from skinbayes.forward.stribeck_direct import (
@@ -145,10 +145,13 @@ def prepare(
     }
     plan = FilmTablePlan(held, spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
 
-    def build(unfinished: Unfinished) -> Stored:
-        return build_film_table(plan, processes=cores, progress=progress, kept=unfinished).to_arrays()
-
-    table = FilmTable.from_arrays(*cached("stribeck", plan.key(), build))
+    table = kept_table(
+        "stribeck",
+        plan.key(),
+        FilmTable,
+        lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
+    )
+    assert table is not None
     tabulated = TabulatedStribeck(table, names)
     middle, far, worst = (100 * float(error) for error in table.held_out)
     return replace(

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from small_film_tables import RANGES
 
-from skinbayes.emulation import Tasks
+from skinbayes.emulation import Tasks, to_arrays
 from skinbayes.lubrication import FilmTable, FilmTablePlan, build_film_table
 from skinbayes.roughness import named_surface
 
@@ -49,13 +49,13 @@ def small(kept: Memory | None = None, count: list[int] | None = None) -> FilmTab
 @pytest.mark.parametrize("patience", [0, 9, 18])
 def test_a_stopped_build_gives_the_same_table(patience: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skinbayes.emulation.tasks._SAVED_EVERY", 0.0)
-    whole = small().to_arrays()
+    whole = to_arrays(small())
     memory = Memory(patience)
     with pytest.raises(KeyboardInterrupt):
         small(memory)
     memory.patience = 10**9
     told: list[int] = []
-    arrays, metadata = small(memory, told).to_arrays()
+    arrays, metadata = to_arrays(small(memory, told))
     assert metadata == whole[1]
     assert all(arrays[name].tobytes() == whole[0][name].tobytes() for name in whole[0])
     assert told[0] > 1 or patience == 0
