@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.lubrication import FlowCurve
@@ -137,7 +136,7 @@ class ForwardModel:
     uses_surface: bool = True
     validate: Callable[[Inputs, Tables], None] | None = None
     explain: Callable[[Inputs, Tables], list[str]] | None = None
-    flags: Callable[[Inputs, Tables], dict[str, NDArray[np.bool_]]] | None = None
+    flags: Callable[[Inputs, Tables], dict[str, BoolArray]] | None = None
     flag_meanings: Mapping[str, str] = field(default_factory=dict)
     prepare: Callable[[ForwardModel, Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""

@@ -13,9 +13,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import total_contact_area, twice_stress_variance
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
@@ -128,7 +127,7 @@ def _evaluate(
 
 def _flags(
     inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedBridges | None = None
-) -> dict[str, NDArray[np.bool_]]:
+) -> dict[str, BoolArray]:
     known = _with_pressing(inputs)
     capillary_pressure, gap = _capillary_pressure(known, tables, closure, table), kelvin_gap_of(known)
     below = (is_below_molecule(gap) > 0) & bridges_form(known)

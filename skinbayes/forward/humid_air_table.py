@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Box, Progress, kept_table
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, nominal_pressure_of, skin_of, spectrum_of
@@ -137,7 +137,7 @@ def prepared_humid_air(
     return replace(
         model,
         evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),
-        flags=partial(cast("partial[dict[str, np.typing.NDArray[np.bool_]]]", model.flags), table=table),
+        flags=partial(cast("partial[dict[str, BoolArray]]", model.flags), table=table),
         prepare=None,
         accuracy="pressure of bridged skin interpolated to 4e-4, or 2e-3 where bridges pull hard (root mean square)",
     )

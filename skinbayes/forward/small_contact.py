@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import sphere_contact
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import (
@@ -46,7 +45,7 @@ def contact_width(inputs: Inputs) -> FloatArray:
     )
 
 
-def small_contact_flags(inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+def small_contact_flags(inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
     """Tell where the contact is too small; never where its size or the roll-off is not known."""
     width, spectrum = contact_width(inputs), spectrum_of(inputs, tables)
     if not isinstance(spectrum, SelfAffineSpectrum):

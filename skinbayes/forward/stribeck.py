@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
@@ -32,7 +31,7 @@ def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     return {name: found[name] for name in FIELDS}
 
 
-def _flags(inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+def _flags(inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
     found = solve(inputs, tables, MODEL.input_names())
     return {name: found[name] > 0 for name in FLAGS}
 

@@ -6,9 +6,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import cylinder_of_sphere
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
@@ -122,7 +121,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
     return found
 
 
-def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.bool_]]:
+def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
     """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast."""
     modulus = skin_of(inputs).contact_modulus
     cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)

@@ -7,9 +7,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
@@ -64,7 +63,7 @@ class TabulatedStribeck:
         found, _ = self._friction(inputs, tables)
         return {name: found[name] for name in FIELDS}
 
-    def flags(self, inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+    def flags(self, inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
         """The flags of `FLAGS`, each ``(B, N)``."""
         found, products = self._friction(inputs, tables)
         shape, strain = products.shape, found["strain"]

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray, IndexArray
 from skinbayes.emulation.chebyshev import summed
 from skinbayes.lubrication._uniform_spline import (
     cell_of,
@@ -54,19 +53,19 @@ class ContractedFilms:
     """
 
     flat: FloatArray
-    start: NDArray[np.intp]
+    start: IndexArray
     anchor: FloatArray
     unit: FloatArray
     speeds: int
     smooth: SmoothFilms
     scales: Scales
-    inside: NDArray[np.bool_]
+    inside: BoolArray
 
     def points(self, shape: tuple[int, int]) -> ContractedFilms:
         """The same for vectors and rows of the given shape one after the other, as arrays of one axis."""
         return self._mapped(lambda array: np.broadcast_to(array, shape).reshape(-1))
 
-    def chosen(self, places: NDArray[np.intp]) -> ContractedFilms:
+    def chosen(self, places: IndexArray) -> ContractedFilms:
         """Some of the points."""
         return self._mapped(lambda array: array.take(places))
 
@@ -155,7 +154,7 @@ class _Ends:
             value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
         return [value] if rate is None else [value, rate]
 
-    def _rate(self, output: int, where: tuple[NDArray[np.intp], ...], point: int) -> FloatArray:
+    def _rate(self, output: int, where: tuple[IndexArray, ...], point: int) -> FloatArray:
         """Derivative by ln λ at the first or last speed, of chosen places."""
         films = self.films
         start = (

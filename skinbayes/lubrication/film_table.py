@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_parameters
 from skinbayes.lubrication.film_reference import SmoothFilms
 
@@ -50,7 +49,7 @@ class FilmTable:
     held_out: FloatArray
     held_out_count: int
 
-    def contains(self, **parameters: Any) -> NDArray[np.bool_]:
+    def contains(self, **parameters: Any) -> BoolArray:
         """Where the table holds parameters (SI, broadcast), or balls that are similar.
 
         They are named as `FILM_PARAMETERS`, or as `HOMOGENEOUS_PARAMETERS`.

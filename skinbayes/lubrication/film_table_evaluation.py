@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray, floats
 from skinbayes.errors import InputError
 from skinbayes.lubrication.effective_viscosity import EffectiveViscosity
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_parameters
@@ -64,9 +63,9 @@ class TabulatedFriction(NamedTuple):
     minimum_film: FloatArray
     central_film: FloatArray
     strain: FloatArray
-    outside_table: NDArray[np.bool_]
-    too_strained: NDArray[np.bool_]
-    film_beyond_ball: NDArray[np.bool_]
+    outside_table: BoolArray
+    too_strained: BoolArray
+    film_beyond_ball: BoolArray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -199,10 +198,7 @@ def _tabulated(
             f"The parameters of a film are {', '.join(FILM_PARAMETERS)}; missing or unknown: {', '.join(wrong)}."
         )
     parameters = [np.asarray(named[name], dtype=np.float64) for name in FILM_PARAMETERS]
-    others = [
-        np.asarray(x, dtype=np.float64)
-        for x in (speed, balls.frictional_shear_stress, balls.velocity_shift_factor)
-    ]
+    others = floats(speed, balls.frictional_shear_stress, balls.velocity_shift_factor)
     given = np.broadcast_shapes(*(x.shape for x in (*parameters, *others)))
     if len(given) > 2:
         raise InputError(f"Arguments have the shape {given}, but need at most two axes: vectors and rows.")
@@ -216,14 +212,14 @@ def _tabulated(
             np.log(np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)).astype(np.float64))
             for x in parameters
         ]
-        others = [np.broadcast_to(x, shape) for x in others]
+        whole_rows = [np.broadcast_to(x, shape) for x in others]
         held = table.coefficients.shape[-1] * (max(rows, 1) if any(x.shape[1] > 1 for x in logs) else 1)
         step = max(1, min(_POINTS // max(rows, 1), _COEFFICIENTS // held))
         parts = [
             _part(
                 table,
                 [x[first : first + step] for x in logs],
-                [np.ascontiguousarray(x[first : first + step]) for x in others],
+                [np.ascontiguousarray(x[first : first + step]) for x in whole_rows],
                 balls,
                 liquids,
             )
@@ -239,7 +235,7 @@ def _part(
     others: list[FloatArray],
     balls: LubricatedBalls,
     liquids: LiquidRows | None,
-) -> tuple[FloatArray | NDArray[np.bool_], ...]:
+) -> tuple[FloatArray | BoolArray, ...]:
     speed, stress, shift = others
     films = contract(table, logs, 6 if balls.everything else 4)
     log_speed = np.maximum(np.log(speed), _STILL)

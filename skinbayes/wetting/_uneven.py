@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
-from skinbayes.arrays import FloatArray
-from skinbayes.wetting._types import IndexArray
+from skinbayes.arrays import FloatArray, IndexArray
 
 _WIDEST = 1e5  # standard deviation over the last edge beyond which nothing but the steps of the curve counts
 _FAR = 8.0  # standard deviations beyond which a normal distribution has nothing left
