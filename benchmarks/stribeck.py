@@ -241,7 +241,7 @@ def vector(parameters: dict[str, np.ndarray], place: int, column: int = 0) -> di
 def run_table() -> dict[str, float]:
     """Build a table, time curves and compare them with the direct solver."""
     start = time.process_time()
-    table = build_film_table(FilmTablePlan(RANGES, named_surface("paper_reference")))
+    table = build_film_table(FilmTablePlan(RANGES, spectrum=named_surface("paper_reference")))
     result = {
         "table_build_cpu_s": time.process_time() - start,
         "table_held_out_p99": float(table.held_out[1]),
@@ -251,7 +251,9 @@ def run_table() -> dict[str, float]:
     seconds = (
         best_time(
             lambda: tabulated_friction(
-                table, POINTS, LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+                table,
+                POINTS,
+                balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
             ),
             20,
         )
@@ -259,7 +261,7 @@ def run_table() -> dict[str, float]:
     )
     times, errors = [], []
     tabulated = tabulated_friction(
-        table, POINTS, LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+        table, POINTS, balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
     ).friction_coefficient
     for place in range(COMPARED):
         one = vector(parameters, place)
@@ -293,21 +295,23 @@ def run_liquids(table: FilmTable) -> dict[str, float]:
         lambda: tabulated_friction_of_liquids(
             table,
             speed,
-            LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
             liquids=rows,
         ),
         20,
     )
     plain = best_time(
         lambda: tabulated_friction(
-            table, 0.1 * speed, LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+            table,
+            0.1 * speed,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
         ),
         20,
     )
     friction, viscosity = tabulated_friction_of_liquids(
         table,
         speed,
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
         liquids=rows,
     )
     start, errors = time.perf_counter(), []

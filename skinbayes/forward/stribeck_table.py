@@ -93,11 +93,11 @@ class TabulatedStribeck:
         )
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
-            friction = tabulated_friction(self.table, products, balls)
+            friction = tabulated_friction(self.table, products, balls=balls)
             unmeasured = np.zeros(friction.friction_coefficient.shape)
         else:
             friction, liquid = tabulated_friction_of_liquids(
-                self.table, inputs["sliding_speed"], balls, liquids=_liquids(tables.flow_curves)
+                self.table, inputs["sliding_speed"], balls=balls, liquids=_liquids(tables.flow_curves)
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
@@ -142,7 +142,7 @@ def prepare(
         name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
     }
-    plan = FilmTablePlan(held, spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
+    plan = FilmTablePlan(held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
 
     table = kept_table(
         "stribeck",

@@ -61,13 +61,13 @@ class FilmTablePlan:
     >>> from skinbayes.roughness import named_surface
     >>> ranges = {"young_modulus_layer": (7e6, 7e6), "young_modulus_bulk": (1e4, 1e5), "rms_height": (1e-5, 3e-5),
     ...           "sphere_radius": (8e-3, 8e-3), "normal_force": (0.2, 0.2), "layer_thickness": (2e-5, 2e-5)}
-    >>> FilmTablePlan(ranges, named_surface("paper_reference")).key()["axes"]
+    >>> FilmTablePlan(ranges, spectrum=named_surface("paper_reference")).key()["axes"]
     {'young_modulus_bulk': 7, 'rms_height': 5}
     """
 
     ranges: Mapping[str, tuple[float, float]]
-    spectrum: PowerSpectrum
     _: KW_ONLY
+    spectrum: PowerSpectrum
     poisson_ratio_layer: float = 0.5
     poisson_ratio_bulk: float = 0.5
     area_correction: float = AREA_CORRECTION

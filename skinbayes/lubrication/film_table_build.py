@@ -67,7 +67,7 @@ def build_film_table(
     >>> ball = {"young_modulus_layer": 7e6, "young_modulus_bulk": 20e3, "rms_height": 22.4e-6, "sphere_radius": 8e-3,
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
-    >>> table = build_film_table(FilmTablePlan(ranges, named_surface("paper_reference"), checked=0))
+    >>> table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), checked=0))
     >>> print(table.axes.names, table.contains(**ball), table.contains(**{**ball, "rms_height": 1e-5}))
     () True False
     """
@@ -152,7 +152,7 @@ def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
     tabulated = tabulated_friction(
         table,
         products,
-        LubricatedBalls(
+        balls=LubricatedBalls(
             parameters=parameters, frictional_shear_stress=shear_stress, largest_strain=plan.largest_strain
         ),
     ).friction_coefficient

@@ -94,6 +94,7 @@ class LubricatedBalls:
 def tabulated_friction(
     table: FilmTable,
     speed_viscosity_product: ArrayLike,
+    *,
     balls: LubricatedBalls,
 ) -> TabulatedFriction:
     """Friction coefficient of a ball on lubricated rough skin, as `stribeck_curve` gives it, from a table (Sect. 6 of the paper).
@@ -124,8 +125,8 @@ def tabulated_friction(
     >>> ball = {"young_modulus_layer": 7e6, "young_modulus_bulk": 20e3, "rms_height": 22.4e-6, "sphere_radius": 8e-3,
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
-    >>> table = build_film_table(FilmTablePlan(ranges, named_surface("paper_reference"), checked=0))
-    >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], LubricatedBalls(parameters=ball,
+    >>> table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), checked=0))
+    >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], balls=LubricatedBalls(parameters=ball,
     ...     frictional_shear_stress=15e6)).friction_coefficient.round(3))
     [1.423 0.915 0.109]
     """
@@ -135,8 +136,8 @@ def tabulated_friction(
 def tabulated_friction_of_liquids(
     table: FilmTable,
     sliding_speed: ArrayLike,
-    balls: LubricatedBalls,
     *,
+    balls: LubricatedBalls,
     liquids: LiquidRows,
 ) -> tuple[TabulatedFriction, EffectiveViscosity]:
     """Friction of a ball on lubricated rough skin with liquids of measured flow curves, from a table (Sect. 6 of the paper).
@@ -177,10 +178,10 @@ def tabulated_friction_of_liquids(
     >>> ball = {"young_modulus_layer": 7e6, "young_modulus_bulk": 20e3, "rms_height": 22.4e-6, "sphere_radius": 8e-3,
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
-    >>> table = build_film_table(FilmTablePlan(ranges, named_surface("paper_reference"), checked=0))
+    >>> table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), checked=0))
     >>> liquids = liquid_rows([FlowCurve([10.0, 100.0, 1000.0], [25.0, 23.5, 15.0])] * 2)
     >>> friction, viscosity = tabulated_friction_of_liquids(table, [1e-3, 1e-2],
-    ...     LubricatedBalls(parameters=ball, frictional_shear_stress=15e6), liquids=liquids)
+    ...     balls=LubricatedBalls(parameters=ball, frictional_shear_stress=15e6), liquids=liquids)
     >>> print(friction.friction_coefficient.round(3), viscosity.viscosity.round(1), viscosity.unmeasured)
     [0.108 0.325] [25.  24.6] [False False]
     """

@@ -38,7 +38,7 @@ def one_film_table(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     }  # fmt: skip
     ranges = {name: (value, value) for name, value in ball.items()}
     table: FilmTable = build_film_table(
-        FilmTablePlan(ranges, named_surface("paper_reference"), speeds=8, nodes=32, checked=0)
+        FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), speeds=8, nodes=32, checked=0)
     )
     monkeypatch.setattr(stribeck_table, "build_film_table", lambda *a, **k: table)
     monkeypatch.setenv("SKINBAYES_CACHE", "")

@@ -24,7 +24,7 @@ def small_table() -> FilmTable:
     """Bulk modulus, roughness and force vary a little."""
     counts = {"young_modulus_bulk": 5, "rms_height": 4, "normal_force": 4}
     return build_film_table(
-        FilmTablePlan(RANGES, named_surface("paper_reference"), counts=counts, checked=20)
+        FilmTablePlan(RANGES, spectrum=named_surface("paper_reference"), counts=counts, checked=20)
     )
 
 

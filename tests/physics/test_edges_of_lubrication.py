@@ -244,15 +244,15 @@ def test_empty_batches_are_empty():
     balls, one = mid_ball(), one_table()
     liquids = liquid_rows([LIQUID] * 2)
     assert tabulated_friction(
-        one, NONE, LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS)
+        one, NONE, balls=LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS)
     ).friction_coefficient.shape == (0,)
     assert tabulated_friction(
-        one, np.empty((0, 2)), LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS)
+        one, np.empty((0, 2)), balls=LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS)
     ).outside_table.shape == (0, 2)
     nothing, none = tabulated_friction_of_liquids(
         one,
         np.empty((0, 2)),
-        LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS),
+        balls=LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS),
         liquids=liquids,
     )
     assert nothing.friction_coefficient.shape == none.viscosity.shape == (0, 2)
@@ -262,7 +262,7 @@ def test_empty_batches_are_empty():
 def one_table():
     """Films of one ball at all speeds."""
     return build_film_table(
-        FilmTablePlan({name: (x, x) for name, x in mid_ball().items()}, SURFACE, checked=0)
+        FilmTablePlan({name: (x, x) for name, x in mid_ball().items()}, spectrum=SURFACE, checked=0)
     )
 
 
@@ -275,7 +275,7 @@ def test_a_table_of_films_at_its_ends():
     found = tabulated_friction(
         table,
         [0.0, 1e-300, 1e-12],
-        LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, everything=True),
+        balls=LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, everything=True),
     )
     np.testing.assert_allclose(found.friction_coefficient, at_rest(), rtol=5e-3)
     np.testing.assert_allclose(found.friction_coefficient[:2], found.friction_coefficient[2], rtol=1e-6)
@@ -284,27 +284,31 @@ def test_a_table_of_films_at_its_ends():
     assert (found.asperity_load_fraction <= 1).all() and not found.outside_table.any()
     for product in (0.0, 1e-300, 1e-12):
         alone = tabulated_friction(
-            table, product, LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS)
+            table, product, balls=LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS)
         )
         assert alone.friction_coefficient == found.friction_coefficient[[0.0, 1e-300, 1e-12].index(product)]
     for product, shift in ((-1.0, 1.0), (np.nan, 1.0), (-1.0, -1.0), (1.0, 0.0), (1e-3, -1.0)):
         bad = tabulated_friction(
             table,
             product,
-            LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, velocity_shift_factor=shift),
+            balls=LubricatedBalls(
+                parameters=ball, frictional_shear_stress=STRESS, velocity_shift_factor=shift
+            ),
         )
         # impossible, which is not to say that another table would do
         assert np.isnan(bad.friction_coefficient) and not bad.outside_table
     far = tabulated_friction(
         table,
         [1e300, np.inf],
-        LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, thickest_film=np.inf),
+        balls=LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, thickest_film=np.inf),
     )
     assert far.outside_table.all() and np.isnan(far.friction_coefficient).all()
     for name in FILM_PARAMETERS:
         for value in (0.0, -1.0, np.inf, np.nan):
             bad = tabulated_friction(
-                table, 1e-3, LubricatedBalls(parameters={**ball, name: value}, frictional_shear_stress=STRESS)
+                table,
+                1e-3,
+                balls=LubricatedBalls(parameters={**ball, name: value}, frictional_shear_stress=STRESS),
             )
             assert np.isnan(bad.friction_coefficient) and bad.outside_table
 
@@ -316,7 +320,7 @@ def test_liquids_at_rest(viscosities):
     friction, viscosity = tabulated_friction_of_liquids(
         one_table(),
         speeds,
-        LubricatedBalls(parameters=mid_ball(), frictional_shear_stress=STRESS),
+        balls=LubricatedBalls(parameters=mid_ball(), frictional_shear_stress=STRESS),
         liquids=liquid_rows([liquid] * 3),
     )
     direct, effective = stribeck_curve_of_liquid(speeds, liquid, **BALL, frictional_shear_stress=STRESS)
@@ -330,7 +334,7 @@ def test_liquids_at_rest(viscosities):
     bad, thick = tabulated_friction_of_liquids(
         one_table(),
         [-1.0, np.nan, 1e-3],
-        LubricatedBalls(parameters=mid_ball(), frictional_shear_stress=STRESS),
+        balls=LubricatedBalls(parameters=mid_ball(), frictional_shear_stress=STRESS),
         liquids=liquid_rows([liquid] * 3),
     )
     assert (

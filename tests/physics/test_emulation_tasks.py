@@ -41,7 +41,7 @@ class Memory:
 def small(kept: Memory | None = None, count: list[int] | None = None) -> FilmTable:
     told = [] if count is None else count
     plan = FilmTablePlan(
-        RANGES, named_surface("paper_reference"), counts=COUNTS, speeds=8, nodes=32, checked=3
+        RANGES, spectrum=named_surface("paper_reference"), counts=COUNTS, speeds=8, nodes=32, checked=3
     )
     return build_film_table(plan, kept=kept, progress=lambda done, total: told.append(done))
 

@@ -73,13 +73,15 @@ def test_a_newtonian_flow_curve_is_a_plain_viscosity():
     found, viscosity = tabulated_friction_of_liquids(
         small_table(),
         speeds,
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=2.0),
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=2.0
+        ),
         liquids=rows,
     )
     wanted = tabulated_friction(
         small_table(),
         0.3 * speeds,
-        LubricatedBalls(
+        balls=LubricatedBalls(
             parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=2.0, everything=True
         ),
     )
@@ -97,7 +99,7 @@ def test_viscosity_agrees_with_its_film():
     found, viscosity = tabulated_friction_of_liquids(
         small_table(),
         speeds,
-        LubricatedBalls(
+        balls=LubricatedBalls(
             parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=1.5, everything=True
         ),
         liquids=rows_of(names),
@@ -117,7 +119,9 @@ def test_viscosity_agrees_with_its_film():
     plain = tabulated_friction(
         small_table(),
         viscosity.viscosity * speeds,
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=1.5),
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=1.5
+        ),
     )
     np.testing.assert_allclose(found.friction_coefficient[good], plain.friction_coefficient[good], rtol=1e-9)
 
@@ -131,7 +135,10 @@ def test_viscosity_against_a_plain_root_finder(name):
     speeds = np.exp(rng.uniform(np.log(1e-3), np.log(0.3), 3))
     rows = liquid_rows([curve] * 3)
     found = tabulated_friction_of_liquids(
-        table, speeds, LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS), liquids=rows
+        table,
+        speeds,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
+        liquids=rows,
     )[1].viscosity
 
     for vector in range(4):
@@ -144,7 +151,7 @@ def test_viscosity_against_a_plain_root_finder(name):
                 film = tabulated_friction(
                     table,
                     np.exp(log_viscosity) * speed,
-                    LubricatedBalls(parameters=one, frictional_shear_stress=STRESS, everything=True),
+                    balls=LubricatedBalls(parameters=one, frictional_shear_stress=STRESS, everything=True),
                 )
                 rate = np.clip(speed / film.central_film, low * (1 + 1e-12), high * (1 - 1e-12))
                 return np.log(curve.viscosity(rate)) - log_viscosity
@@ -165,7 +172,7 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
     batch = tabulated_friction_of_liquids(
         small_table(),
         speeds,
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
         liquids=rows,
     )
     for place in (0, 48, 49, 119):
@@ -175,7 +182,7 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
         single = tabulated_friction_of_liquids(
             small_table(),
             speeds,
-            LubricatedBalls(parameters=one, frictional_shear_stress=STRESS),
+            balls=LubricatedBalls(parameters=one, frictional_shear_stress=STRESS),
             liquids=rows,
         )
         for whole, part in zip((*batch[0], *batch[1]), (*single[0], *single[1]), strict=True):
@@ -188,7 +195,7 @@ def test_wrong_number_of_rows_is_named():
         tabulated_friction_of_liquids(
             small_table(),
             [1e-3] * 3,
-            LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
             liquids=rows_of(["honey"] * 2),
         )
 
@@ -227,7 +234,7 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
         found, tabulated = tabulated_friction_of_liquids(
             small_table(),
             speeds,
-            LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
             liquids=liquid_rows([CURVES[name]] * 6),
         )
         np.testing.assert_allclose(found.friction_coefficient, curve.friction_coefficient, rtol=7e-3)

@@ -54,7 +54,7 @@ def test_table_against_direct_solutions():
     found = tabulated_friction(
         small_table(),
         PRODUCTS,
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
     )
     for place in range(4):
         wanted = direct(vector(parameters, place), PRODUCTS)
@@ -75,7 +75,7 @@ def test_beyond_both_ends_of_the_speeds_against_direct_solutions():
     found = tabulated_friction(
         small_table(),
         products,
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
     )
     wanted = direct(parameters, products, nodes=300)
     for name in ("couette", "pressure_flow", "central_film"):
@@ -105,7 +105,7 @@ def test_similar_balls_are_the_same_entry_and_the_same_curve():
     wanted = direct(parameters, products)
     solved = direct(similar, of_similar)
     tabulated = tabulated_friction(
-        table, of_similar, LubricatedBalls(parameters=similar, frictional_shear_stress=SHEAR_STRESS)
+        table, of_similar, balls=LubricatedBalls(parameters=similar, frictional_shear_stress=SHEAR_STRESS)
     )
     for curve, tolerance in ((solved, 1e-5), (tabulated, 6e-3)):
         # E0 h is smaller by the ratio and so are V^(1/2) and p_H
@@ -122,7 +122,7 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
         batch = tabulated_friction(
             small_table(),
             PRODUCTS,
-            LubricatedBalls(
+            balls=LubricatedBalls(
                 parameters=parameters,
                 frictional_shear_stress=stress,
                 velocity_shift_factor=shift,
@@ -134,7 +134,7 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
             single = tabulated_friction(
                 small_table(),
                 PRODUCTS,
-                LubricatedBalls(
+                balls=LubricatedBalls(
                     parameters=one,
                     frictional_shear_stress=stress[place],
                     velocity_shift_factor=shift[place],
@@ -152,7 +152,7 @@ def test_curve_and_its_slope_are_continuous():
     found = tabulated_friction(
         small_table(),
         np.exp(log_product),
-        LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
     )
     step = log_product[1] - log_product[0]
     for name in ("friction_coefficient", "couette", "pressure_flow", "central_film"):
@@ -169,7 +169,7 @@ def test_curve_and_its_slope_are_continuous():
     along = tabulated_friction(
         small_table(),
         3e-3,
-        LubricatedBalls(
+        balls=LubricatedBalls(
             parameters={**parameters, "young_modulus_bulk": moduli[:, None]}, frictional_shear_stress=1e7
         ),
     )
@@ -181,7 +181,7 @@ def test_outside_is_refused_not_extrapolated():
     table = small_table()
     inside = vector(draw(np.random.default_rng(6), 1), 0)
     assert not tabulated_friction(
-        table, 1e-3, LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
+        table, 1e-3, balls=LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
     ).outside_table
     for name, value in (
         ("young_modulus_bulk", 6.1e4),
@@ -197,19 +197,19 @@ def test_outside_is_refused_not_extrapolated():
         if name in ("sphere_radius", "young_modulus_layer"):
             changed |= {"rms_height": 24.9e-6, "young_modulus_bulk": 5.99e4, "normal_force": 0.599}
         found = tabulated_friction(
-            table, 1e-3, LubricatedBalls(parameters=changed, frictional_shear_stress=SHEAR_STRESS)
+            table, 1e-3, balls=LubricatedBalls(parameters=changed, frictional_shear_stress=SHEAR_STRESS)
         )
         assert found.outside_table, name
         assert np.isnan(found.friction_coefficient)
         assert not table.contains(**changed)
     beyond = tabulated_friction(
-        table, 10.0, LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
+        table, 10.0, balls=LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
     )
     assert beyond.film_beyond_ball
     assert np.isnan(beyond.friction_coefficient)
     assert np.isnan(
         tabulated_friction(
-            table, -1.0, LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
+            table, -1.0, balls=LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
         ).friction_coefficient
     )
 
@@ -226,11 +226,13 @@ def test_tables_travel():
     again = from_arrays(FilmTable, arrays, json.loads(json.dumps(metadata)))
     parameters = draw(np.random.default_rng(7), 3)
     wanted = tabulated_friction(
-        table, PRODUCTS, LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+        table, PRODUCTS, balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
     )
     for other in (again, pickle.loads(pickle.dumps(table))):
         found = tabulated_friction(
-            other, PRODUCTS, LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+            other,
+            PRODUCTS,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
         )
         assert np.array_equal(found.friction_coefficient, wanted.friction_coefficient, equal_nan=True)
     with pytest.raises(InputError, match="lacks held_out"):
@@ -242,7 +244,7 @@ def test_progress_and_processes():
     said = []
     surface = named_surface("paper_reference")
     options = {"counts": {"normal_force": 3}, "speeds": 9, "nodes": 40, "checked": 2}
-    plan = FilmTablePlan(ranges, surface, **options)
+    plan = FilmTablePlan(ranges, spectrum=surface, **options)
     one = build_film_table(plan, progress=lambda done, total: said.append((done, total)))
     assert said == [(done, 8) for done in range(1, 9)]  # three anchors, three nodes, two checks
     two = build_film_table(plan, processes=2)
@@ -258,16 +260,16 @@ def test_films_that_are_not_found_end_the_build(monkeypatch):
 
     ranges = {name: (low, low) for name, (low, _) in RANGES.items()}
     surface, options = named_surface("paper_reference"), {"speeds": 9, "checked": 0}
-    whole = build_film_table(FilmTablePlan(ranges, surface, **options))
+    whole = build_film_table(FilmTablePlan(ranges, spectrum=surface, **options))
     monkeypatch.setattr(film_sweeps, "lubricated_films", sometimes)
     # with more nodes a film may be found
-    again = build_film_table(FilmTablePlan(ranges, surface, **options, nodes=84))
+    again = build_film_table(FilmTablePlan(ranges, spectrum=surface, **options, nodes=84))
     assert np.abs(again.coefficients - whole.coefficients)[:10].max() < 0.1
     monkeypatch.setattr(
         film_sweeps, "lubricated_films", lambda *a, **o: solved(*a, **o)._replace(couette=np.nan)
     )
     with pytest.raises(InputError, match=r"No film was found for a cylinder of radius 0\.00453 m"):
-        build_film_table(FilmTablePlan(ranges, surface, **options))
+        build_film_table(FilmTablePlan(ranges, spectrum=surface, **options))
 
 
 def test_smooth_films_between_and_below_their_points():
@@ -296,16 +298,18 @@ def test_smooth_films_between_and_below_their_points():
 
 def test_wrong_inputs_are_named():
     with pytest.raises(InputError, match="need exactly young_modulus_layer"):
-        build_film_table(FilmTablePlan({"rms_height": (1e-6, 2e-6)}, named_surface("paper_reference")))
+        build_film_table(
+            FilmTablePlan({"rms_height": (1e-6, 2e-6)}, spectrum=named_surface("paper_reference"))
+        )
     with pytest.raises(InputError, match=r"rms_height ranges from 2e-05 to 1e-05 m"):
         build_film_table(
-            FilmTablePlan({**RANGES, "rms_height": (2e-5, 1e-5)}, named_surface("paper_reference"))
+            FilmTablePlan({**RANGES, "rms_height": (2e-5, 1e-5)}, spectrum=named_surface("paper_reference"))
         )
     with pytest.raises(InputError, match="missing or unknown: layer_thickness"):
         tabulated_friction(
             small_table(),
             1e-3,
-            LubricatedBalls(
+            balls=LubricatedBalls(
                 parameters={n: v[0] for n, v in RANGES.items() if n != "layer_thickness"},
                 frictional_shear_stress=1e6,
             ),
@@ -314,19 +318,21 @@ def test_wrong_inputs_are_named():
 
 def test_the_key_tells_tables_apart():
     surface = named_surface("paper_reference")
-    key = FilmTablePlan(RANGES, surface).key()
+    key = FilmTablePlan(RANGES, spectrum=surface).key()
     assert json.loads(json.dumps(key)) == key
-    assert FilmTablePlan(dict(reversed(RANGES.items())), named_surface("paper_reference")).key() == key
+    assert (
+        FilmTablePlan(dict(reversed(RANGES.items())), spectrum=named_surface("paper_reference")).key() == key
+    )
     others = [
-        FilmTablePlan({**RANGES, "normal_force": (0.2, 0.7)}, surface).key(),
-        FilmTablePlan(RANGES, named_surface("paper_reference_sharp")).key(),
-        FilmTablePlan(RANGES, surface, poisson_ratio_layer=0.4).key(),
-        FilmTablePlan(RANGES, surface, poisson_ratio_bulk=0.4).key(),
-        FilmTablePlan(RANGES, surface, area_correction=1.0).key(),
-        FilmTablePlan(RANGES, surface, counts={"rms_height": 9}).key(),
-        FilmTablePlan(RANGES, surface, speeds=32).key(),
-        FilmTablePlan(RANGES, surface, nodes=97).key(),
-        FilmTablePlan(RANGES, surface, checked=0).key(),
+        FilmTablePlan({**RANGES, "normal_force": (0.2, 0.7)}, spectrum=surface).key(),
+        FilmTablePlan(RANGES, spectrum=named_surface("paper_reference_sharp")).key(),
+        FilmTablePlan(RANGES, spectrum=surface, poisson_ratio_layer=0.4).key(),
+        FilmTablePlan(RANGES, spectrum=surface, poisson_ratio_bulk=0.4).key(),
+        FilmTablePlan(RANGES, spectrum=surface, area_correction=1.0).key(),
+        FilmTablePlan(RANGES, spectrum=surface, counts={"rms_height": 9}).key(),
+        FilmTablePlan(RANGES, spectrum=surface, speeds=32).key(),
+        FilmTablePlan(RANGES, spectrum=surface, nodes=97).key(),
+        FilmTablePlan(RANGES, spectrum=surface, checked=0).key(),
     ]
     texts = {json.dumps(other, sort_keys=True) for other in (key, *others)}
     assert len(texts) == 10
