@@ -191,7 +191,7 @@ def stribeck_curve(
 
     def gather(name: str, kind: str) -> Any:
         # an empty batch has no row that tells its kind
-        stacked = np.array([row[name] for row in rows], dtype=bool if "bool" in kind else np.float64)
+        stacked = np.array([row[name] for row in rows], dtype=bool if kind == "BoolArray" else np.float64)
         if name == "strain":
             return stacked.reshape(batch)[()]
         return stacked.reshape((*batch, *given.shape))[()]
