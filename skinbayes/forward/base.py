@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.lubrication import FlowCurve
@@ -44,6 +44,13 @@ class Tables:
         if self.flow_curves is None:
             return self
         return Tables(self.spectrum, (self.flow_curves[row],))
+
+    def digest(self) -> str | None:
+        """What tells one spectrum from another in the key of a table that is kept; None without a spectrum."""
+        if self.spectrum is None:
+            return None
+        parts = (self.spectrum.wavevector, self.spectrum.node_power, self.spectrum.scale)
+        return hashlib.sha256(np.concatenate([np.ravel(x) for x in parts]).tobytes()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -144,7 +151,7 @@ class ForwardModel:
     uses_surface: bool = True
     validate: Callable[[Inputs, Tables], None] | None = None
     explain: Callable[[Inputs, Tables], list[str]] | None = None
-    flags: Callable[[Inputs, Tables], dict[str, NDArray[np.bool_]]] | None = None
+    flags: Callable[[Inputs, Tables], dict[str, BoolArray]] | None = None
     flag_meanings: Mapping[str, str] = field(default_factory=dict)
     prepare: Callable[[ForwardModel, Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""
