@@ -96,7 +96,7 @@ def baseline(model: Path, steps: int) -> dict[str, float]:
     start = posterior[rng.choice(len(posterior), WALKERS, replace=False)]
     state = np.random.RandomState(1).get_state(legacy=True)
     block = advance(
-        target, EnsembleState(start, target.log_density(start), tuple(state)), steps, True, stretch_move
+        target, EnsembleState(start, target.log_density(start), tuple(state)), steps, stretch_move
     )
     series = block.positions.transpose(2, 1, 0)
     tau = max(autocorrelation_time(rank_normalise(each))[0] for each in series)

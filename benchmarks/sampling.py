@@ -83,7 +83,7 @@ def measure(target: Correlated, moves: MoveFactory, walkers: int, steps: int, se
     state = np.random.RandomState(seed).get_state(legacy=True)
     start = EnsembleState(positions, target.log_density(positions), tuple(state))
     begun = time.process_time()
-    block = advance(target, start, steps, True, moves)
+    block = advance(target, start, steps, moves)
     seconds = time.process_time() - begun
     tau = max(
         autocorrelation_time(rank_normalise(block.positions[..., index]).T)[0] for index in range(DIMENSION)

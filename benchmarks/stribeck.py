@@ -32,7 +32,9 @@ from skinbayes.files import load_dataset
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
     FilmTable,
+    FilmTablePlan,
     FlowCurve,
+    LubricatedBalls,
     build_film_table,
     liquid_rows,
     stribeck_curve,
@@ -239,7 +241,7 @@ def vector(parameters: dict[str, np.ndarray], place: int, column: int = 0) -> di
 def run_table() -> dict[str, float]:
     """Build a table, time curves and compare them with the direct solver."""
     start = time.process_time()
-    table = build_film_table(RANGES, named_surface("paper_reference"))
+    table = build_film_table(FilmTablePlan(RANGES, spectrum=named_surface("paper_reference")))
     result = {
         "table_build_cpu_s": time.process_time() - start,
         "table_held_out_p99": float(table.held_out[1]),
@@ -249,7 +251,9 @@ def run_table() -> dict[str, float]:
     seconds = (
         best_time(
             lambda: tabulated_friction(
-                table, POINTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+                table,
+                POINTS,
+                balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
             ),
             20,
         )
@@ -257,7 +261,7 @@ def run_table() -> dict[str, float]:
     )
     times, errors = [], []
     tabulated = tabulated_friction(
-        table, POINTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+        table, POINTS, balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
     ).friction_coefficient
     for place in range(COMPARED):
         one = vector(parameters, place)
@@ -289,18 +293,26 @@ def run_liquids(table: FilmTable) -> dict[str, float]:
     parameters = draw(128) | {"normal_force": np.asarray(data["normal_force"], dtype=float)[None]}
     seconds = best_time(
         lambda: tabulated_friction_of_liquids(
-            table, speed, liquids=rows, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+            table,
+            speed,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
+            liquids=rows,
         ),
         20,
     )
     plain = best_time(
         lambda: tabulated_friction(
-            table, 0.1 * speed, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+            table,
+            0.1 * speed,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
         ),
         20,
     )
     friction, viscosity = tabulated_friction_of_liquids(
-        table, speed, liquids=rows, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+        table,
+        speed,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
+        liquids=rows,
     )
     start, errors = time.perf_counter(), []
     for column in range(speed.size):

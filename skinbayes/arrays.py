@@ -10,9 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray: TypeAlias = NDArray[np.float64]
 """A NumPy array of 64-bit floats."""
 
-__all__ = ["ArrayLike", "FloatArray", "arrays"]
+BoolArray: TypeAlias = NDArray[np.bool_]
+"""A NumPy array of truth values."""
+
+IndexArray: TypeAlias = NDArray[np.intp]
+"""A NumPy array of places in another one."""
+
+__all__ = ["ArrayLike", "BoolArray", "FloatArray", "IndexArray", "floats"]
 
 
-def arrays(*values: ArrayLike) -> list[FloatArray]:
-    """The values as arrays of 64-bit floats."""
-    return [np.asarray(value, dtype=np.float64) for value in values]
+def floats(*values: ArrayLike) -> tuple[FloatArray, ...]:
+    """Each of some values as an array of 64-bit floats."""
+    return tuple(np.asarray(value, dtype=np.float64) for value in values)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import warnings
 from pathlib import Path
 
 NO_SPACE = frozenset(getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG") if hasattr(errno, name))
@@ -18,6 +19,15 @@ class InputError(ValueError):
     The message is one or two plain sentences, or a list of them for a file with several faults: where (file, line, row,
     column or parameter), what was found, and what was expected, in its unit. The command line prints it as it is and
     exits with status 2.
+
+    Examples
+    --------
+    >>> import skinbayes as sb
+    >>> try:
+    ...     sb.load_problem("forearm-glas")
+    ... except sb.InputError as error:
+    ...     print(str(error)[:60])
+    no model 'forearm-glas'. Did you mean 'forearm-glass'? Shipp
     """
 
 
@@ -30,6 +40,11 @@ class RepairWarning(UserWarning):
 
     The run goes on; the command line prints the message as it is on standard error.
     """
+
+
+def warn_of_repair(message: str) -> None:
+    """Say what was damaged in a run and what was done about it."""
+    warnings.warn(message, RepairWarning, stacklevel=3)
 
 
 class MachineError(RuntimeError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 
 
 def friction_coefficient(
@@ -37,7 +37,7 @@ def friction_coefficient(
     1.4234
     """
     with np.errstate(all="ignore"):
-        return coefficient(*arrays(frictional_shear_stress, relative_contact_area, nominal_pressure))
+        return coefficient(*floats(frictional_shear_stress, relative_contact_area, nominal_pressure))
 
 
 def coefficient(shear: FloatArray, area: FloatArray, pressure: FloatArray) -> FloatArray:

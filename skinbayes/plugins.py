@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
@@ -9,32 +10,56 @@ from typing import Any
 from skinbayes.vocabulary import add_quantity
 
 FORWARD_MODELS = "skinbayes.forward_models"
-"""Entry point group of forward models: their names, and where the objects are."""
+NOISE_FAMILIES = "skinbayes.noise_families"
+ENGINES = "skinbayes.engines"
+"""Entry point groups: names, and where the objects are."""
+
+_entry_points = cache(entry_points)
 
 
 @cache
-def installed_forward_models() -> tuple[dict[str, Any], dict[str, str]]:
-    """The forward models that installed packages offer.
+def installed(group: str, accept: Callable[[str, Any], object]) -> tuple[dict[str, Any], dict[str, str]]:
+    """What installed packages offer under an entry point group.
 
-    Their quantities become known, so this comes before any file is read.
+    Parameters
+    ----------
+    group : the entry point group
+    accept : called with name and object of each; what it raises is what is wrong with the object
 
     Returns
     -------
-    models : name of the entry point to the object
-    broken : name to what is wrong, of those that cannot be loaded; they matter to nobody who does not ask for them
+    usable : name to object
+    broken : name to what is wrong, of those that cannot be used; they matter to nobody who does not ask for them
     """
-    models, broken = {}, {}
-    for point in entry_points(group=FORWARD_MODELS):
+    usable, broken = {}, {}
+    for point in _entry_points().select(group=group):
         try:
-            model = point.load()
-            if getattr(model, "name", None) != point.name:
-                raise ValueError(f"expected a ForwardModel of the name '{point.name}', found {model!r:.60}")
-            for quantity in model.quantities:
-                add_quantity(quantity)
-            models[point.name] = model
+            found = point.load()
+            accept(point.name, found)
+            usable[point.name] = found
         except Exception as error:
             package = point.dist.name if point.dist is not None else point.value
             broken[point.name] = (
                 f"offered by the installed package '{package}', but cannot be used ({type(error).__name__}: {error!s:.200})"
             )
-    return models, broken
+    return usable, broken
+
+
+def check_name(name: str, found: Any, kind: str) -> None:
+    """ValueError unless an object has the name of its entry point."""
+    if getattr(found, "name", None) != name:
+        raise ValueError(f"expected a {kind} of the name '{name}', found {found!r:.60}")
+
+
+def _accept_model(name: str, model: Any) -> None:
+    check_name(name, model, "ForwardModel")
+    for quantity in model.quantities:
+        add_quantity(quantity)
+
+
+def installed_forward_models() -> tuple[dict[str, Any], dict[str, str]]:
+    """The forward models of installed packages, and what is wrong with others.
+
+    Their quantities become known, so this comes before any file is read.
+    """
+    return installed(FORWARD_MODELS, _accept_model)

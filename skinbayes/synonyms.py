@@ -118,51 +118,31 @@ def likely_meant(
     """
     plain = plain_name(name[:80])
     plain_names = {plain_name(one): one for one in known}
-    found = _called(name.strip(), plain, plain_names, known, symbols)
-    if not found:
-        found = _spread_of(plain, plain_names, known, symbols, spreads)
+    bare = {re.sub("[^a-z0-9]", "", one): written for one, written in plain_names.items()}
+
+    def called(name: str, plain: str) -> list[tuple[str, str]]:
+        """The known names that this is: written otherwise, as a symbol, or by a synonym."""
+        if plain in plain_names:
+            return [(plain_names[plain], "")]
+        if len(plain) > 3 and (joined := re.sub("[^a-z0-9]", "", plain)) in bare:
+            return [(bare[joined], "")]
+        symbol = unicodedata.normalize("NFKC", name)
+        for written, quantity in symbols.items():
+            if symbol in (written, written.replace("_", "")) and quantity in known:
+                return [(quantity, "")]
+        meanings = [(one, "", words) for one, words in _SYNONYMS.items()]
+        meanings += [(one, why, words) for one, (why, words) in _OTHERWISE.items()]
+        return [(one, why) for one, why, words in meanings if one in known and plain in words.split()][:2]
+
+    found = called(name.strip(), plain)
+    split = _SPREAD.fullmatch(plain)
+    if not found and split is not None and (split["before"] or split["after"]):
+        spread = spreads[split["after"] in _ERRORS]
+        of_base = called(split["base"], split["base"])
+        found = [(one + spread, "") for one, why in of_base if not why and not one.endswith(spreads)]
     if not found and near and len(plain) > 2:
         close = get_close_matches(plain, list(plain_names), n=2, cutoff=_CUTOFF)
         words = set(plain.split("_"))
         parts = [one for one in plain_names if len(plain) > 3 and words <= set(one.split("_"))]
         found = [(plain_names[one], "") for one in (close or (parts if len(parts) <= 2 else []))]
     return found
-
-
-def _called(
-    name: str, plain: str, plain_names: dict[str, str], known: Collection[str], symbols: dict[str, str]
-) -> list[tuple[str, str]]:
-    """The known names that this is: written otherwise, as a symbol, or by a synonym."""
-    if plain in plain_names:
-        return [(plain_names[plain], "")]
-    bare = {re.sub("[^a-z0-9]", "", one): written for one, written in plain_names.items()}
-    if len(plain) > 3 and (joined := re.sub("[^a-z0-9]", "", plain)) in bare:
-        return [(bare[joined], "")]
-    symbol = unicodedata.normalize("NFKC", name)
-    for written, quantity in symbols.items():
-        if symbol in (written, written.replace("_", "")) and quantity in known:
-            return [(quantity, "")]
-    found = [(one, "") for one, words in _SYNONYMS.items() if one in known and plain in words.split()]
-    found += [
-        (one, why) for one, (why, words) in _OTHERWISE.items() if one in known and plain in words.split()
-    ]
-    return found[:2]
-
-
-def _spread_of(
-    plain: str,
-    plain_names: dict[str, str],
-    known: Collection[str],
-    symbols: dict[str, str],
-    spreads: tuple[str, str],
-) -> list[tuple[str, str]]:
-    """Names of spreads, where the name is that of a known quantity with one of the usual words for a spread."""
-    split = _SPREAD.fullmatch(plain)
-    if split is None or not (split["before"] or split["after"]):
-        return []
-    base, spread = split["base"], spreads[split["after"] in _ERRORS]
-    return [
-        (one + spread, "")
-        for one, why in _called(base, base, plain_names, known, symbols)
-        if not why and not one.endswith(spreads)
-    ]

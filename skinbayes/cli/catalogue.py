@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, print_text, say
+from skinbayes.cli.options import json_option
+from skinbayes.cli.output import print_json, print_sentences, print_table, print_text, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,14 +25,8 @@ def models(as_json: bool) -> None:
 
     specs = [load_model(name) for name in shipped_names("models")]
     if as_json:
-        print_json(
-            {
-                "models": [
-                    {"name": s.name, "title": s.title, "forward": s.forward, "dataset": s.dataset}
-                    for s in specs
-                ]
-            }
-        )
+        keys = ("name", "title", "forward", "dataset")
+        print_json({"models": [{key: getattr(spec, key) for key in keys} for spec in specs]})
         return
     rows = [
         (s.name, "shipped" if s.dataset else "yours" if s.observables else "none", s.title) for s in specs
@@ -82,18 +77,17 @@ def _show_model(name: str, as_json: bool) -> None:
 
     problem = load_problem(name)
     spec = problem.spec
-    parameters: list[dict[str, Any]] = []
-    for parameter in problem.parameters:
-        parameters.append(
-            {
-                "name": parameter.label,
-                "unit": parameter.unit,
-                "prior": parameter.prior_text if parameter.prior else None,
-                "fixed": parameter.value,
-                **({"tied": parameter.prior_text} if parameter.same_as else {}),
-                "source": parameter.source,
-            }
-        )
+    parameters = [
+        {
+            "name": p.label,
+            "unit": p.unit,
+            "prior": p.prior_text if p.prior else None,
+            "fixed": p.value,
+            **({"tied": p.prior_text} if p.same_as else {}),
+            "source": p.source,
+        }
+        for p in problem.parameters
+    ]
     if as_json:
         print_json({
             "model": spec.name, "title": spec.title, "description": spec.description, "forward": spec.forward,
@@ -113,17 +107,16 @@ def _show_model(name: str, as_json: bool) -> None:
         print_text(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
     for covariate in spec.covariates:
         print_text(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
-    rows = []
-    for p in problem.free:
-        rows.append((p.label, p.prior_text, p.source))
-    for p in problem.fixed:
-        value = (
-            "inf"
-            if p.value == float("inf")
-            else format_quantity(float(p.value or 0.0), p.unit, written=p.prior_text)
+    rows = [
+        (
+            p.label,
+            p.prior_text
+            if p.value is None
+            else f"= {format_quantity(p.value, p.unit, written=p.prior_text)}",
+            p.source,
         )
-        rows.append((p.label, f"= {value}", p.source))
-    rows += [(p.label, p.prior_text, p.source) for p in problem.tied]
+        for p in problem.parameters
+    ]
     print_table(("parameter", "prior or value", "source"), rows)
 
 
@@ -135,20 +128,13 @@ def _paragraphs(text: str) -> list[str]:
 
 def _show_dataset(name: str, as_json: bool) -> None:
     provenance, table = _read(name)
-    headers, rows = table.header, table.rows
     if as_json:
-        print_json(
-            {
-                "dataset": name,
-                "provenance": provenance and provenance.model_dump(),
-                "columns": headers,
-                "rows": rows,
-            }
-        )
+        described = None if provenance is None else provenance.model_dump()
+        print_json({"dataset": name, "provenance": described, "columns": table.header, "rows": table.rows})
         return
     if provenance is not None:
         print_text(provenance.title, ", ".join(provenance.authors), "")
-        texts = (
+        shown = (
             "doi",
             "licence",
             "attribution",
@@ -158,20 +144,18 @@ def _show_dataset(name: str, as_json: bool) -> None:
             "transformation",
             "spread",
         )
-        for label in texts:
-            value = getattr(provenance, label)
-            if value:
-                print_text(
-                    f"{label.replace('_', ' ') + ':':16}{', '.join(value) if isinstance(value, list) else value}"
-                )
+        for label in shown:
+            if value := getattr(provenance, label):
+                text = ", ".join(value) if isinstance(value, list) else value
+                print_text(f"{label.replace('_', ' ') + ':':16}{text}")
         if provenance.caveats:
             say()
             print_sentences(provenance.caveats, "Caveats")
-    print_table(headers, rows)
+    print_table(table.header, table.rows)
 
 
 def _read(name: str) -> tuple[Provenance | None, CsvTable]:
-    from skinbayes.files.dataset import find_dataset
+    from skinbayes.files.find_dataset import find_dataset
     from skinbayes.files.provenance import load_provenance
     from skinbayes.files.table import read_table
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, say
+from skinbayes.cli.options import data_option, json_option, model_argument
+from skinbayes.cli.output import print_json, print_sentences, say
 
 
 @click.command()
-@click.argument("model")
-@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
+@model_argument
+@data_option
 @json_option
 def check(model: str, data: str | None, as_json: bool) -> None:
     """Check a model before sampling: priors, and what the data tell.

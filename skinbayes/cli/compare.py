@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, print_text
+from skinbayes.cli.options import json_option
+from skinbayes.cli.output import print_json, print_sentences, print_table, print_text
 
 if TYPE_CHECKING:
     from skinbayes.comparison import Comparison

@@ -2,23 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table, say
+from skinbayes.cli.options import json_option, named_values, overwrite_option
+from skinbayes.cli.output import print_json, print_sentences, print_table, say
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     from skinbayes.files.digitised import DigitisedFile, DigitisedSet
 
 
+def axis_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What an axis of the figure shows, and how well it was read."""
+    for axis, letter in (("ordinate", "y"), ("abscissa", "x")):  # the last decorator is listed first
+        for option in (
+            click.option(
+                f"--logarithmic-{axis}", is_flag=True, help=f"The export holds log10 of the {letter} values."
+            ),
+            click.option(
+                f"--{axis}-error",
+                metavar="ERROR",
+                help=f"Reading error of the {letter} axis: '2 %' of the value, or in a unit.",
+            ),
+            click.option(
+                f"--{axis}",
+                metavar="'NAME [UNIT]'",
+                help=f"What the {letter} axis shows, with the unit of the axis.",
+            ),
+        ):
+            command = option(command)
+    return command
+
+
 @click.command()
 @click.argument("file")
-@click.option("--abscissa", metavar="'NAME [UNIT]'", help="What the x axis shows, with the unit of the axis.")
-@click.option("--ordinate", metavar="'NAME [UNIT]'", help="What the y axis shows, with the unit of the axis.")
+@axis_options
 @click.option(
     "--set-name",
     "names",
@@ -31,83 +54,70 @@ if TYPE_CHECKING:
 )
 @click.option("--constant", "pairs", multiple=True, metavar="NAME=VALUE", help="Add a column with one value.")
 @click.option(
-    "--abscissa-error", metavar="ERROR", help="Reading error of the x axis: '2 %' of the value, or in a unit."
-)
-@click.option(
-    "--ordinate-error", metavar="ERROR", help="Reading error of the y axis: '2 %' of the value, or in a unit."
-)
-@click.option(
     "--pixel-error",
-    type=float,
+    type=click.FloatRange(0, min_open=True),
     metavar="N",
     help="Reading error in pixels of a project file's picture.  [default: 1]",
 )
-@click.option("--logarithmic-abscissa", is_flag=True, help="The export holds log10 of the x values.")
-@click.option("--logarithmic-ordinate", is_flag=True, help="The export holds log10 of the y values.")
 @click.option("-o", "--output", metavar="FILE.csv", help="CSV to write, or a folder for data.csv.")
-@click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
+@overwrite_option
 @json_option
 def digitised(
     file: str,
-    abscissa: str | None,
-    ordinate: str | None,
     names: tuple[str, ...],
     label_column: str | None,
     pairs: tuple[str, ...],
-    abscissa_error: str | None,
-    ordinate_error: str | None,
     pixel_error: float | None,
-    logarithmic_abscissa: bool,
-    logarithmic_ordinate: bool,
     output: str | None,
     overwrite: bool,
     as_json: bool,
+    **axes: Any,
 ) -> None:
     """Turn points digitised with WebPlotDigitizer into a data set.
 
     FILE is a project (JSON or tar) or a CSV export. Alone, its data sets are listed. A project holds the calibration of
     the axes, from which the reading errors follow; for a CSV state them.
     """
+    from skinbayes.files.dataset import load_dataset
     from skinbayes.files.digitised import read_digitised
     from skinbayes.files.digitised_axes import parse_axis
-    from skinbayes.files.digitised_columns import PIXEL_ERROR, digitised_table
+    from skinbayes.files.digitised_columns import digitised_table
     from skinbayes.files.digitised_provenance import provenance_template
 
     export = read_digitised(file)
-    if abscissa is None and ordinate is None and output is None:
+    asked = {"--abscissa": axes["abscissa"], "--ordinate": axes["ordinate"], "--output": output}
+    if not any(asked.values()):
         _list(export, as_json)
         return
-    if abscissa is None or ordinate is None or output is None:
-        missing = [
-            name
-            for name, value in (("--abscissa", abscissa), ("--ordinate", ordinate), ("--output", output))
-            if value is None
-        ]
+    if missing := [option for option, value in asked.items() if value is None]:
         raise InputError(
             f"{file}: {' and '.join(missing)} missing; expected what both axes show and where to write"
         )
-    meanings = (
-        parse_axis(abscissa, "--abscissa", logarithmic=logarithmic_abscissa, error=abscissa_error),
-        parse_axis(ordinate, "--ordinate", logarithmic=logarithmic_ordinate, error=ordinate_error),
+    first, second = (
+        parse_axis(
+            axes[axis], f"--{axis}", logarithmic=axes[f"logarithmic_{axis}"], error=axes[f"{axis}_error"]
+        )
+        for axis in ("abscissa", "ordinate")
     )
+    meanings = first, second
     sets = _chosen(export, names)
     if pixel_error is not None:
-        _check_pixel_error(export, pixel_error, all(meaning.error is not None for meaning in meanings))
-    target, described_in = _targets(output)
+        _check_pixel_error(export, all(meaning.error is not None for meaning in meanings))
+    target, described_in = _targets(str(output))
     if target.exists() and target.samefile(export.path):
         raise InputError(f"{target}: this is the export itself; expected another file to write")
-    constants = _constants(pairs)
+    constants = named_values("--constant", pairs, 'sphere_radius="8 mm"')
     table = digitised_table(
         sets,
         meanings,
         str(export.path),
-        pixel_error=PIXEL_ERROR if pixel_error is None else pixel_error,
+        pixel_error=pixel_error or 1.0,
         label_column=label_column,
         constants=constants,
     )
     refuse_existing([target, described_in], overwrite)
     write_text(target, table.csv_text())
-    sha256 = _loads(target)
+    sha256 = load_dataset(target).sha256  # as any data set
     kept = described_in.exists()
     if not kept:
         chosen = [one.name for one in sets.values()]
@@ -128,32 +138,32 @@ def digitised(
 
 
 def _list(export: DigitisedFile, as_json: bool) -> None:
-    documents: list[dict[str, Any]] = []
-    for one in export.sets:
-        scales = None if one.axes is None else ["log" if flag else "linear" for flag in one.axes.logarithmic]
-        documents.append(
-            {"name": one.name, "points": len(one.places), "minimum": one.values.min(axis=0),
-             "maximum": one.values.max(axis=0), "axes": scales}
-        )  # fmt: skip
+    sets = [
+        {
+            "name": one.name,
+            "points": len(one.places),
+            "minimum": one.values.min(axis=0),
+            "maximum": one.values.max(axis=0),
+            "axes": None
+            if one.axes is None
+            else ["log" if flag else "linear" for flag in one.axes.logarithmic],
+        }
+        for one in export.sets
+    ]
     if as_json:
         print_json(
-            {
-                "file": str(export.path),
-                "source": export.kind,
-                "sets": documents,
-                "left_out": dict(export.left_out),
-            }
+            {"file": str(export.path), "source": export.kind, "sets": sets, "left_out": dict(export.left_out)}
         )
         return
     say(f"{export.path}: {export.kind}")
     rows = [
         (
-            item["name"],
-            str(item["points"]),
-            *(f"{item['minimum'][i]:.4g} to {item['maximum'][i]:.4g}" for i in (0, 1)),
-            "not known" if item["axes"] is None else ", ".join(item["axes"]),
+            one["name"],
+            str(one["points"]),
+            *(f"{low:.4g} to {high:.4g}" for low, high in zip(one["minimum"], one["maximum"], strict=True)),
+            ", ".join(one["axes"] or ["not known"]),
         )
-        for item in documents
+        for one in sets
     ]
     print_table(("data set", "points", "abscissa", "ordinate", "axes"), rows, right=(1,))
     if export.left_out:
@@ -168,8 +178,7 @@ def _chosen(export: DigitisedFile, names: tuple[str, ...]) -> dict[str, Digitise
     wanted: list[tuple[str, str]] = []
     for text in names:
         name, equals, label = text.rpartition("=")
-        split = bool(equals) and text not in known
-        wanted.append((name.strip(), label.strip()) if split else (text, text))
+        wanted.append((name.strip(), label.strip()) if equals and text not in known else (text, text))
     sets = export.select([name for name, _ in wanted])
     labels = [label for _, label in wanted] or [one.name for one in sets]
     if len(set(labels)) < len(labels):
@@ -179,9 +188,7 @@ def _chosen(export: DigitisedFile, names: tuple[str, ...]) -> dict[str, Digitise
     return dict(zip(labels, sets, strict=True))
 
 
-def _check_pixel_error(export: DigitisedFile, pixel_error: float, all_stated: bool) -> None:
-    if not 0.0 < pixel_error < float("inf"):
-        raise InputError(f"--pixel-error: found {pixel_error:g}; expected a number of pixels > 0")
+def _check_pixel_error(export: DigitisedFile, all_stated: bool) -> None:
     if all_stated:
         raise InputError(
             "--pixel-error: the errors of both axes are stated as well; expected one or the other"
@@ -203,24 +210,3 @@ def _targets(output: str) -> tuple[Path, Path]:
         path = path / "data.csv"
     name = "provenance.toml" if path.name == "data.csv" else f"{path.stem}.provenance.toml"
     return path, path.with_name(name)
-
-
-def _constants(pairs: tuple[str, ...]) -> dict[str, str]:
-    constants: dict[str, str] = {}
-    for pair in pairs:
-        name, equals, value = (part.strip() for part in pair.partition("="))
-        if not equals or not name or not value:
-            raise InputError(
-                f'--constant {pair[:80]}: expected NAME=VALUE, for example --constant sphere_radius="8 mm"'
-            )
-        if name in constants:
-            raise InputError(f"--constant {name}: set twice")
-        constants[name] = value
-    return constants
-
-
-def _loads(target: Path) -> str:
-    """Read what was written as any data set; its sha256."""
-    from skinbayes.files.dataset import load_dataset
-
-    return load_dataset(target).sha256

@@ -2,52 +2,36 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from skinbayes.cli.fit_output import print_fit
-from skinbayes.cli.output import (
-    EXIT_DONE,
-    EXIT_INTERRUPTED,
-    EXIT_NOT_CONVERGED,
+from skinbayes.cli.options import (
+    data_option,
     json_option,
-    print_json,
-    say,
+    model_argument,
+    named_values,
+    number_option,
+    set_option,
+    settings_of,
 )
+from skinbayes.cli.output import EXIT_DONE, EXIT_INTERRUPTED, EXIT_NOT_CONVERGED, print_json, say
+from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 
 @click.command()
-@click.argument("model")
-@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
-@click.option(
-    "--seed", default=1, show_default=True, type=click.IntRange(0), help="The same seed gives the same draws."
-)
-@click.option(
-    "--ess",
-    default=2000,
-    show_default=True,
-    type=click.IntRange(10),
-    help="Effective sample size wanted in every parameter.",
-)
-@click.option(
-    "--cores",
-    default=1,
-    show_default=True,
-    type=click.IntRange(1),
-    help="Worker processes; they do not change the draws.",
-)
-@click.option(
-    "--max-steps",
-    default=10_000,
-    show_default=True,
-    type=click.IntRange(100),
-    help="Stop here, converged or not (emcee).",
-)
+@model_argument
+@data_option
+@number_option("--seed", 1, 0, "The same seed gives the same draws.")
+@number_option("--ess", 2000, 10, "Effective sample size wanted in every parameter.")
+@number_option("--cores", 1, 1, "Worker processes; they do not change the draws.")
+@number_option("--max-steps", 10_000, 100, "Stop here, converged or not (emcee).")
 @click.option(
     "--engine",
     default="emcee",
@@ -55,6 +39,14 @@ if TYPE_CHECKING:
     metavar="NAME",
     help="What samples: emcee, or nested (nested sampling, also gives the evidence).",
 )
+@click.option(
+    "--engine-option",
+    "engine_pairs",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Option of the engine, such as live_points=500 of nested; can be repeated.",
+)
+@set_option
 @click.option("-o", "--output", metavar="DIR", help="Run directory.  [default: runs/MODEL-seedN]")
 @click.option("--resume", is_flag=True, help="Continue the run in the run directory.")
 @click.option(
@@ -69,6 +61,8 @@ def fit(
     cores: int,
     max_steps: int,
     engine: str,
+    engine_pairs: tuple[str, ...],
+    pairs: tuple[str, ...],
     output: str | None,
     resume: bool,
     with_report: bool,
@@ -83,9 +77,10 @@ def fit(
     from skinbayes.problem import load_problem
     from skinbayes.problem.rows import data_notes
 
-    problem = load_problem(model, data=data)
+    problem = load_problem(model, data=data, settings=settings_of(pairs))
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     options = {"max_steps": max_steps} if engine == "emcee" else {}
+    options |= _engine_options(engine_pairs)
     try:
         with fit_progress() as (count, progress):
             result = sample(
@@ -113,6 +108,23 @@ def fit(
         return status
     print_fit(result, directory, page)
     return status
+
+
+def _engine_options(pairs: tuple[str, ...]) -> dict[str, Any]:
+    """Options of the engine by name; it says itself which it has, and in which range."""
+    named = named_values("--engine-option", pairs, "live_points=500")
+    for name in named:
+        if option := {"seed": "--seed", "ess": "--ess", "cores": "--cores"}.get(name):
+            raise InputError(f"--engine-option {name}: every engine has it; expected as {option}")
+    return {name: _plain_value(text) for name, text in named.items()}
+
+
+def _plain_value(text: str) -> int | float | bool | str:
+    """A number, true or false where the text is one, else the text."""
+    for read in (int, float, {"true": True, "false": False}.__getitem__):
+        with suppress(ValueError, KeyError):
+            return read(text)
+    return text
 
 
 def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]:

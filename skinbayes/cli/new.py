@@ -8,15 +8,16 @@ import click
 
 from skinbayes.atomic import write_atomically
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json, say
+from skinbayes.cli.options import json_option, model_argument, overwrite_option
+from skinbayes.cli.output import print_json, say
 from skinbayes.errors import InputError
 
 
 @click.command()
-@click.argument("model")
+@model_argument
 @click.option("-o", "--output", metavar="FILE.toml", required=True, help="Model file to write.")
 @click.option("--data", metavar="FILE.csv", help="Your own data, which the copy explains.")
-@click.option("--overwrite", is_flag=True, help="Overwrite the model file if it exists.")
+@overwrite_option
 @json_option
 def new(model: str, output: str, data: str | None, overwrite: bool, as_json: bool) -> None:
     """Copy a shipped model into a file of your own, to be changed."""

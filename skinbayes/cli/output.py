@@ -10,7 +10,7 @@ import math
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 from unicodedata import category
 
@@ -31,18 +31,8 @@ EXIT_NOT_CONVERGED = 3
 EXIT_MACHINE = 4
 EXIT_INTERRUPTED = 130
 
-_Command = Callable[..., Any]
-
-
-def json_option(command: _Command) -> _Command:
-    """The option every command has."""
-    return click.option(
-        "--json",
-        "as_json",
-        is_flag=True,
-        help="Print one JSON document (SI values) on standard output, nothing else.",
-    )(command)
-
+MOST_ROWS = 200
+"""Longest table of rows; of more the first, or the most telling, are listed."""
 
 LONGEST_CELL = 500
 """Characters of a cell of a table that are printed."""

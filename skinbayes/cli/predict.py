@@ -6,32 +6,14 @@ from typing import Any
 
 import click
 
-from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, json_option, print_json, print_table, say
+from skinbayes.cli.options import json_option, model_argument, set_option, settings_of
+from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, MOST_ROWS, print_json, print_table, say
 from skinbayes.errors import InputError
 
 
-def parse_settings(pairs: tuple[str, ...]) -> dict[str, str]:
-    """Split ``NAME=VALUE`` pairs; :class:`InputError` for a pair without ``=`` or a name set twice."""
-    settings: dict[str, str] = {}
-    for pair in pairs:
-        name, equals, value = pair.partition("=")
-        if not equals or not name.strip() or not value.strip():
-            raise InputError(f'--set {pair}: expected NAME=VALUE, for example --set yield_stress="50 MPa"')
-        if name.strip() in settings:
-            raise InputError(f"--set {name.strip()}: set twice")
-        settings[name.strip()] = value.strip()
-    return settings
-
-
-MOST_ROWS = 200
-"""Longest table."""
-
-
 @click.command()
-@click.argument("model")
-@click.option(
-    "--set", "pairs", multiple=True, metavar="NAME=VALUE", help="Fix a parameter or condition, with its unit."
-)
+@model_argument
+@set_option
 @click.option("--conditions", metavar="FILE.csv", help="Rows to predict instead of the model's own.")
 @json_option
 def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json: bool) -> int:
@@ -43,7 +25,7 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
     """
     from skinbayes.problem import load_problem
 
-    settings = parse_settings(pairs)
+    settings = settings_of(pairs)
     problem = load_problem(model, settings=settings, conditions=conditions)
     theta = problem.prior_medians()
     prediction = problem.predict(theta)

@@ -4,23 +4,15 @@ from __future__ import annotations
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, print_sentences, print_table
-
-MOST_ROWS = 200
-"""Longest table: of more data those are listed that the priors expect least."""
+from skinbayes.cli.options import data_option, json_option, model_argument, number_option
+from skinbayes.cli.output import MOST_ROWS, print_json, print_sentences, print_table
 
 
 @click.command()
-@click.argument("model")
-@click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(0), help="Seed of the draws.")
-@click.option(
-    "--draws",
-    default=4000,
-    show_default=True,
-    type=click.IntRange(100, 1_000_000),
-    help="Number of prior draws.",
-)
+@model_argument
+@data_option
+@number_option("--seed", 1, 0, "Seed of the draws.")
+@number_option("--draws", 4000, 100, "Number of prior draws.", most=1_000_000)
 @json_option
 def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) -> None:
     """Compare what the priors predict with the data, row by row."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from skinbayes.cli.output import console, say
 
@@ -27,7 +27,7 @@ def sampling_progress(what: str = SAMPLING) -> Iterator[Callable[[RunProgress], 
     """Yield what to call after every block of steps; says how many there are and what is still missing, on one line."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
-        yield _lines(what)
+        yield _now_and_then(lambda progress: f"{what}: {progress.steps} steps, {progress.sentence()}")
         return
     from rich.progress import Progress as Bar
     from rich.progress import TextColumn, TimeElapsedColumn
@@ -53,7 +53,7 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield what to call with the number done and their total; nothing is shown before the first call."""
     terminal = console(stderr=True)
     if not terminal.is_terminal:
-        yield _counted_lines(what)
+        yield _now_and_then(lambda done, total: f"{what}: {done} of {total}")
         return
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
@@ -103,25 +103,14 @@ def baseline_progress() -> Iterator[Callable[[str, RunProgress], None]]:
         yield update
 
 
-def _counted_lines(what: str) -> Callable[[int, int], None]:
+def _now_and_then(say_it: Callable[..., str]) -> Callable[..., None]:
+    """A line on standard error each time that enough time has passed."""
     last = time.monotonic()
 
-    def update(done: int, total: int) -> None:
+    def update(*progress: Any) -> None:
         nonlocal last
         if time.monotonic() - last >= QUIET_SECONDS:
             last = time.monotonic()
-            say(f"{what}: {done} of {total}", err=True)
-
-    return update
-
-
-def _lines(what: str) -> Callable[[RunProgress], None]:
-    last = time.monotonic()
-
-    def update(progress: RunProgress) -> None:
-        nonlocal last
-        if time.monotonic() - last >= QUIET_SECONDS:
-            last = time.monotonic()
-            say(f"{what}: {progress.steps} steps, {progress.sentence()}", err=True)
+            say(say_it(*progress), err=True)
 
     return update

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from skinbayes.cli.output import json_option, print_json, say
+from skinbayes.cli.options import json_option
+from skinbayes.cli.output import print_json, say
 
 
 @click.command()

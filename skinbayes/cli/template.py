@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.output import json_option, print_json, say
+from skinbayes.cli.options import json_option, model_argument, overwrite_option
+from skinbayes.cli.output import print_json, say
 
 
 @click.command()
-@click.argument("model")
+@model_argument
 @click.option("-o", "--output", metavar="FILE.csv", help="CSV to write; without it the header is printed.")
-@click.option("--overwrite", is_flag=True, help="Overwrite the CSV if it exists.")
+@overwrite_option
 @json_option
 def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> None:
     """Write the header of a CSV that the data of a model need.
@@ -27,10 +29,7 @@ def template(model: str, output: str | None, overwrite: bool, as_json: bool) -> 
         refuse_existing([Path(output)], overwrite)
         write_text(Path(output), f"{found.header}\n")
     if as_json:
-        columns = [
-            {"name": column.name, "unit": column.unit, "meaning": column.meaning, "why": column.why}
-            for column in found.columns
-        ]
+        columns = [asdict(column) for column in found.columns]
         print_json({
             "model": found.model, "file": output, "header": found.header, "columns": columns, "notes": list(found.notes),
         })  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,7 +30,6 @@ class ComparedModel:
     Attributes
     ----------
     name : the model
-    log_evidence, log_evidence_se : not computed in this version, None
     elpd_loo, elpd_loo_se : expected log predictive density of left-out data and its standard error
     p_loo : effective number of parameters
     elpd_difference, elpd_difference_se : difference to the best model and its standard error
@@ -41,8 +40,6 @@ class ComparedModel:
     """
 
     name: str
-    log_evidence: float | None
-    log_evidence_se: float | None
     elpd_loo: float
     elpd_loo_se: float
     p_loo: float
@@ -55,8 +52,7 @@ class ComparedModel:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
-        levels = {column: entry.to_dict() for column, entry in self.left_out.items()}
-        return asdict(replace(self, left_out={})) | {"left_out": levels}
+        return vars(self) | {"left_out": {column: entry.to_dict() for column, entry in self.left_out.items()}}
 
 
 @dataclass(frozen=True)
@@ -150,11 +146,25 @@ def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | 
     refit : sample a model anew without a level of a grouping column where importance sampling cannot leave it out
     progress : called before the first and after every refit of a model, with the number done and their total
 
+    Returns
+    -------
+    Comparison
+        Models, best first, with predictive densities (ln, of data in SI), stacking weights, and sentences.
+
     Raises
     ------
     InputError
         Fewer than two fits, fits of different data (another table, other rows or another observable), or a refit is needed
         of a fit whose model or data are not at hand.
+
+    Examples
+    --------
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-water")
+    >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 500))
+    >>> compared = sb.compare([fit, fit])
+    >>> compared.rows, [model.elpd_difference for model in compared.models]
+    (11, [0.0, 0.0])
     """
     if len(fits) < 2:
         raise InputError(f"{len(fits)} run given; a comparison needs at least two")
@@ -186,8 +196,6 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
         models.append(
             ComparedModel(
                 name=entry.name,
-                log_evidence=None,
-                log_evidence_se=None,
                 elpd_loo=entry.loo["elpd"],
                 elpd_loo_se=entry.loo["se"],
                 p_loo=entry.loo["p"],

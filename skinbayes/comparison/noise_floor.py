@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.phrases import plural
-from skinbayes.statistics.two_way import crossed_analysis_of_variance
+from skinbayes.statistics.two_way import residual_scatter
 
 if TYPE_CHECKING:
     from skinbayes.problem import Problem
@@ -88,8 +88,7 @@ def noise_floor(problem: Problem) -> NoiseFloor | None:
     logarithmic = observation.noise.logarithmic
     values = np.log(observation.values) if logarithmic else observation.values
     columns = problem.groups.columns
-    analysis = crossed_analysis_of_variance(values, {c: problem.conditions.labels[c] for c in columns})
-    deviation = analysis.residual_standard_deviation
+    deviation, left = residual_scatter(values, {c: problem.conditions.labels[c] for c in columns})
     if not (isfinite(deviation) and deviation > 0):
         return None
-    return NoiseFloor(columns, observation.name, logarithmic, deviation, analysis.degrees_of_freedom)
+    return NoiseFloor(columns, observation.name, logarithmic, deviation, left)

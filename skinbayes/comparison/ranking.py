@@ -76,7 +76,6 @@ class AgainstBaselines:
     ranking : the fit against each baseline model in each question
     scatter : what each model leaves unexplained, by name
     floor : the noise floor of the data, or None
-    missing : sentences on baseline models that could not be had
     """
 
     name: str
@@ -84,7 +83,6 @@ class AgainstBaselines:
     ranking: tuple[RankedAgainst, ...]
     scatter: dict[str, Scatter]
     floor: NoiseFloor | None
-    missing: tuple[str, ...] = ()
 
     @property
     def loses(self) -> bool:
@@ -109,7 +107,7 @@ class AgainstBaselines:
             noise = self.scatter[self.name].noise
             if noise is not None:
                 said.append(self.floor.against(noise))
-        return said + list(self.missing)
+        return said
 
     def headers(self) -> list[str]:
         """Headers of :meth:`rows`."""

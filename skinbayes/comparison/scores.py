@@ -85,24 +85,8 @@ class LeftOut:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
-        return {
-            "elpd": self.elpd,
-            "elpd_se": self.elpd_se,
-            "difference": self.difference,
-            "difference_se": self.difference_se,
-            "unreliable_levels": len(self.unreliable),
-            "refitted_levels": len(self.refitted),
-            "levels": {
-                entry.level: {
-                    "elpd": entry.elpd,
-                    "rows": entry.rows,
-                    "pareto_k": entry.pareto_k,
-                    "refitted": entry.refitted,
-                    "reliable": entry.reliable,
-                }
-                for entry in self.levels
-            },
-        }
+        counts = {"unreliable_levels": len(self.unreliable), "refitted_levels": len(self.refitted)}
+        return vars(self) | counts | {"levels": {entry.level: vars(entry) for entry in self.levels}}
 
 
 @dataclass(frozen=True)

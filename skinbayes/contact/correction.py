@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.roughness._rules import gauss_unit
 
 IndexArray: TypeAlias = NDArray[np.intp]
@@ -116,7 +116,7 @@ def corrected_twice_stress_variance(
     1.41392e+14
     """
     with np.errstate(all="ignore"):
-        return corrected(*arrays(nominal_pressure, twice_stress_variance, area_correction))
+        return corrected(*floats(nominal_pressure, twice_stress_variance, area_correction))
 
 
 def corrected(pressure: FloatArray, width: FloatArray, gamma: FloatArray) -> FloatArray:

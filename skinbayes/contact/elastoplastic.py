@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import erf, erfc
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.contact.area import without_load
 from skinbayes.contact.correction import AREA_CORRECTION, corrected
 from skinbayes.roughness._rules import gauss_unit
@@ -98,7 +98,7 @@ def elastoplastic_contact_area(
     """
     with np.errstate(all="ignore"):
         ratio, spread, reach, shape = _dimensionless(
-            *arrays(nominal_pressure, twice_stress_variance, yield_stress, area_correction)
+            *floats(nominal_pressure, twice_stress_variance, yield_stress, area_correction)
         )
         elastic, plastic, non_contact = np.full((3, ratio.size), np.nan)
         yielded = (ratio >= 1) & ~np.isnan(spread)
@@ -158,7 +158,7 @@ def total_contact_area(
     1.3660e-04 6.4817e-04
     """
     with np.errstate(all="ignore"):
-        return total_area(*arrays(nominal_pressure, twice_stress_variance, yield_stress, area_correction))
+        return total_area(*floats(nominal_pressure, twice_stress_variance, yield_stress, area_correction))
 
 
 def total_area(pressure: FloatArray, width: FloatArray, limit: FloatArray, gamma: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import elliprd
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.contact.hertz import sphere_contact
 from skinbayes.contact.line_contact import EquivalentCylinder, cylinder_of_contact
 
@@ -126,7 +126,7 @@ def elliptic_contact(
     >>> print(f"{contact.semi_axis_along:.4e} m, {contact.semi_axis_across:.4e} m")
     3.1496e-03 m, 4.9947e-03 m
     """
-    along, across = arrays(radius_along, radius_across)
+    along, across = floats(radius_along, radius_across)
     with np.errstate(all="ignore"):
         along, across = np.where(along > 0, along, np.nan), np.where(across > 0, across, np.nan)
         circle = sphere_contact(normal_force, np.sqrt(along * across), reduced_modulus=reduced_modulus)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 
 
 class HertzSphere(NamedTuple):
@@ -60,7 +60,7 @@ def sphere_contact(
     >>> print(f"{contact.contact_radius:.4e} m, {contact.mean_pressure:.1f} Pa")
     4.8274e-03 m, 6829.4 Pa
     """
-    force, radius, modulus = arrays(normal_force, sphere_radius, reduced_modulus)
+    force, radius, modulus = floats(normal_force, sphere_radius, reduced_modulus)
     with np.errstate(all="ignore"):
         contact_radius = np.cbrt(0.75 * _possible(force, radius, modulus) * radius / modulus)
         mean = mean_pressure(force, radius, modulus)

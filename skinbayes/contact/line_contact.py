@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.contact.hertz import sphere_contact
 
 SQUEEZE_OUT_RATIO = np.sqrt(3 / 8)
@@ -73,7 +73,7 @@ def line_contact(
     >>> print(f"{contact.half_width:.3e} m, {contact.maximum_pressure:.0f} Pa")
     2.178e-03 m, 6407 Pa
     """
-    load, radius, modulus = arrays(load_per_length, cylinder_radius, reduced_modulus)
+    load, radius, modulus = floats(load_per_length, cylinder_radius, reduced_modulus)
     with np.errstate(all="ignore"):
         load = np.where((load >= 0) & (radius > 0) & (modulus > 0), load, np.nan)
         half_width = np.sqrt(4 * load * radius / (np.pi * modulus))
@@ -145,7 +145,7 @@ def cylinder_of_contact(
     >>> print(f"{cylinder.cylinder_radius:.3e} m, {cylinder.load_per_length:.2f} N/m")
     4.533e-03 m, 21.92 N/m
     """
-    radius, pressure, modulus = arrays(effective_contact_radius, mean_pressure, reduced_modulus)
+    radius, pressure, modulus = floats(effective_contact_radius, mean_pressure, reduced_modulus)
     with np.errstate(all="ignore"):
         radius = np.where((radius > 0) & (pressure > 0) & (modulus > 0), radius, np.nan)
         half_width = radius * SQUEEZE_OUT_RATIO

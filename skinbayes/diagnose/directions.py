@@ -73,7 +73,7 @@ def _combination(
     shown = {names[i]: i for i in np.flatnonzero(strong)}
     fractions = {name: nice(exponents[:, i]) for name, i in shown.items()}
     written = {name: (low[i], middle[i], high[i], fractions[name]) for name, i in shown.items() if logs[i]}
-    typed = {name: _either(fractions[name], middle[i]) for name, i in shown.items()}
+    typed = {name: fractions[name] or float(middle[i]) for name, i in shown.items()}  # no fraction is 0
     audible = (
         np.quantile(np.linalg.norm(parts.values[:, :, None] * parts.vectors, axis=1), 0.9, axis=0) >= INFORMED
     )
@@ -89,10 +89,6 @@ def _combination(
         weak=weak,
         spread_ratio=spread_ratios(parts, vector[:, None, :])[0],
     )
-
-
-def _either(fraction: float | None, value: float) -> float:
-    return float(value) if fraction is None else fraction
 
 
 def _renamed(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from skinbayes.diagnose.formulas import percent, product
+from skinbayes.diagnose.formulas import product
 from skinbayes.diagnose.rule import verdict
-from skinbayes.phrases import and_list, row_count
+from skinbayes.phrases import and_list, percent, row_count
 
 SIGN = 0.05
 """An exponent beyond this on both sides of zero changes sign over the prior."""

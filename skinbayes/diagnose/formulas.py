@@ -1,17 +1,11 @@
-"""Percentages, products of powers and changes of parameters as people write them."""
+"""Products of powers and changes of parameters as people write them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from skinbayes.arrays import FloatArray
-from skinbayes.phrases import and_list
-
-
-def percent(fraction: float) -> str:
-    """A fraction as a percentage with two digits: ``"12 %"``, ``"0.4 %"``."""
-    value = 100.0 * fraction
-    return f"{value:.0f} %" if value >= 9.95 else f"{value:.2g} %"
+from skinbayes.phrases import and_list, percent
 
 
 def power(name: str, low: float, value: float, high: float, exact: float | None) -> str:

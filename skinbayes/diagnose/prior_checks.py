@@ -9,7 +9,6 @@ from itertools import combinations
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.diagnose.formulas import percent
 from skinbayes.diagnose.rule import Verdict, verdict
 from skinbayes.statistics.transforms import VectorTransform
 
@@ -39,26 +38,6 @@ class PriorUpdate:
     def ratio(self) -> float:
         """Posterior over prior standard deviation."""
         return float(np.sqrt(max(0.0, 1.0 - self.contraction)))
-
-    def sentence(self) -> str:
-        """The finding in plain English."""
-        if self.verdict == "contradicted":
-            side = "below" if self.prior_quantile < 0.5 else "above"
-            fraction = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
-            return (
-                f"{self.name}: the data contradict the prior; half of the posterior lies {side} a value that the "
-                f"prior gave {fraction if fraction != '0 %' else 'no'} chance."
-            )
-        if self.verdict == "not updated":
-            return f"{self.name}: not updated by the data; what is shown is the prior."
-        if self.verdict == "moved":
-            side = "below" if self.prior_quantile < 0.5 else "above"
-            fraction = percent(min(self.prior_quantile, 1.0 - self.prior_quantile))
-            return (
-                f"{self.name}: moved by the data but not narrowed; half of the posterior lies {side} a value that the prior "
-                f"gave {fraction} chance."
-            )
-        return f"{self.name}: updated by the data; its standard deviation is {percent(self.ratio)} of the prior's."
 
 
 def prior_updates(
@@ -112,7 +91,6 @@ class Ridge:
     first, second : the parameters
     correlation : of their coordinates (ln where positive)
     exponent : k of second ∝ first^k along the ridge (slope between the coordinates, where one is not positive)
-    spread : standard deviation of ln(second / first^k), the part that is known
     logarithmic : True if both coordinates are logarithms
     """
 
@@ -120,18 +98,7 @@ class Ridge:
     second: str
     correlation: float
     exponent: float
-    spread: float
     logarithmic: bool
-
-    def sentence(self) -> str:
-        """The finding in plain English."""
-        start = f"{self.first} and {self.second} are known together better than apart (correlation {self.correlation:.2f})"
-        if not self.logarithmic:
-            return f"{start}."
-        k = f"{abs(self.exponent):.2g}"
-        raised = self.first if k == "1" else f"{self.first}^{k}"
-        combination = f"{self.second} / {raised}" if self.exponent > 0.0 else f"{self.second} · {raised}"
-        return f"{start}: {combination} is known within a factor {np.exp(self.spread):.2g}."
 
 
 def ridges(
@@ -153,8 +120,8 @@ def ridges(
     --------
     >>> rng = np.random.default_rng(1)
     >>> x = np.exp(rng.normal(size=500))
-    >>> print(ridges(["a", "b"], np.column_stack([x, x**2 * np.exp(0.01 * rng.normal(size=500))]))[0].sentence())
-    a and b are known together better than apart (correlation 1.00): b / a^2 is known within a factor 1.
+    >>> round(ridges(["a", "b"], np.column_stack([x, x**2 * np.exp(0.01 * rng.normal(size=500))]))[0].exponent, 2)
+    2.0
     """
     values = np.asarray(draws, dtype=float)
     logs = np.asarray((values > 0.0).all(axis=0) if logarithmic is None else logarithmic, dtype=bool)
@@ -168,6 +135,5 @@ def ridges(
             continue
         axis = np.linalg.eigh(covariance)[1][:, -1]
         exponent = float(axis[1] / axis[0])
-        spread = float(np.std(coordinates[:, j] - exponent * coordinates[:, i], ddof=1))
-        found.append(Ridge(names[i], names[j], correlation, exponent, spread, bool(logs[i] and logs[j])))
+        found.append(Ridge(names[i], names[j], correlation, exponent, bool(logs[i] and logs[j])))
     return tuple(sorted(found, key=lambda ridge: -abs(ridge.correlation)))

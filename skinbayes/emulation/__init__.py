@@ -3,10 +3,10 @@
 from skinbayes.emulation.box import Box, Places
 from skinbayes.emulation.cache import FOLDER, Stored, Unfinished, cache_folder, cached
 from skinbayes.emulation.interpolant import Interpolant, counts_along, refined
-from skinbayes.emulation.stored import from_arrays, to_arrays
+from skinbayes.emulation.stored import from_arrays, kept_table, to_arrays
 from skinbayes.emulation.tasks import Kept, Progress, Tasks
 
 __all__ = [
     "FOLDER", "Box", "Interpolant", "Kept", "Places", "Progress", "Stored", "Tasks", "Unfinished", "cache_folder", "cached",
-    "counts_along", "from_arrays", "refined", "to_arrays",
+    "counts_along", "from_arrays", "kept_table", "refined", "to_arrays",
 ]  # fmt: skip

@@ -8,9 +8,8 @@ from functools import reduce
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation.chebyshev import lobatto
 
 Places = Mapping[str, FloatArray]
@@ -41,7 +40,7 @@ class Box:
         """Names of the inputs that vary."""
         return tuple(name for name, (low, high) in self.ends.items() if high > low)
 
-    def covers(self, places: Places, last: Places | None = None) -> NDArray[np.bool_]:
+    def covers(self, places: Places, last: Places | None = None) -> BoolArray:
         """Where places, or all from there to ``last``, are inside, up to rounding."""
         end = places if last is None else last
         inside = [

@@ -1,15 +1,19 @@
-"""Frozen objects of arrays, numbers and texts as arrays by name and what JSON can hold, and back."""
+"""Frozen objects of arrays, numbers and texts as arrays by name and what JSON can hold, and back; tables kept so on disk."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any, get_origin, get_type_hints
+from typing import Any, TypeVar, get_origin, get_type_hints
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.emulation.cache import Unfinished, cached
 from skinbayes.errors import InputError
+
+Table = TypeVar("Table")
+_NONE = "none"  # in the metadata: there is no table
 
 
 def to_arrays(table: Any) -> tuple[dict[str, FloatArray], dict[str, Any]]:
@@ -28,7 +32,9 @@ def to_arrays(table: Any) -> tuple[dict[str, FloatArray], dict[str, Any]]:
     return arrays, metadata
 
 
-def from_arrays(cls: type, arrays: Mapping[str, Any], metadata: Mapping[str, Any], prefix: str = "") -> Any:
+def from_arrays(
+    cls: type[Table], arrays: Mapping[str, Any], metadata: Mapping[str, Any], prefix: str = ""
+) -> Table:
     """The object that `to_arrays` took apart; `InputError` if something is missing."""
     found: dict[str, Any] = {}
     for name, kind in get_type_hints(cls).items():
@@ -42,3 +48,23 @@ def from_arrays(cls: type, arrays: Mapping[str, Any], metadata: Mapping[str, Any
         else:
             raise InputError(f"A {cls.__name__} lacks {name}.")
     return cls(**found)
+
+
+def kept_table(
+    kind: str, key: Mapping[str, Any] | None, cls: type[Table], build: Callable[[Unfinished], Table | None]
+) -> Table | None:
+    """The table, a frozen dataclass, that ``build`` gives, or None if it gives none; from disk if it was built before.
+
+    Parameters
+    ----------
+    kind, key : see `cached`; nothing is kept if the key is None
+    cls : class of the table
+    build : makes the table; is given the place where it may keep what is done so far
+    """
+
+    def stored(unfinished: Unfinished) -> tuple[dict[str, FloatArray], dict[str, Any]]:
+        table = build(unfinished)
+        return ({}, {_NONE: True}) if table is None else to_arrays(table)
+
+    arrays, metadata = stored(Unfinished(None, "")) if key is None else cached(kind, key, stored)
+    return None if _NONE in metadata else from_arrays(cls, arrays, metadata)

@@ -14,12 +14,19 @@ from skinbayes import vocabulary
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.table import CsvTable, Problems, quoted
-from skinbayes.units import comma_advice, convert_array, describe_unit, is_unit, split_header
+from skinbayes.units import (
+    NUMBER,
+    comma_advice,
+    convert_array,
+    converts,
+    describe_unit,
+    is_unit,
+    split_header,
+)
 from skinbayes.vocabulary import Quantity
 
 LabelArray = NDArray[np.str_]
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _NUMERIC = re.compile(r"[+-]?[0-9.,]*[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?")
 _INFINITE = re.compile(r"[+-]?inf(?:inity)?", re.IGNORECASE)
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "missing"})
@@ -29,7 +36,7 @@ DROP = 'or write missing = "drop" under [data] of the model file'
 
 Missing = Literal["refuse", "keep"]
 
-_LONGEST_LABEL = 200
+LONGEST_LABEL = 200
 _LONGEST_SHOWN = 20
 """Characters of a cell that a message quotes."""
 
@@ -56,7 +63,7 @@ def read_quantity(
     missing : whether cells without a value are problems, or kept as NaN; None where a model file cannot drop their rows
     """
     cells = table.column(position)
-    written = np.array([_number(cell) for cell in cells])
+    written = np.array([number_in(cell) for cell in cells])
     where = f"{table.header_place}, column '{table.header[position].strip()}'"
     values = convert_array(written, unit, quantity.unit, where, difference=difference)
     if quantity.admits(values.min()) and quantity.admits(values.max()):  # the range has no gaps; nan fails
@@ -73,8 +80,9 @@ def _is_missing(cell: str) -> bool:
     return cell.lower() in _MISSING
 
 
-def _number(cell: str) -> float:
-    if _NUMBER.fullmatch(cell):
+def number_in(cell: str) -> float:
+    """The number in a cell, NaN if there is none."""
+    if NUMBER.fullmatch(cell):
         return float(cell)
     if _INFINITE.fullmatch(cell):
         return -inf if cell.startswith("-") else inf
@@ -88,6 +96,8 @@ def _found(cell: str, unit: str, value: float, quantity: Quantity) -> tuple[str,
         what = "an empty cell" if cell == "" else f"{quoted(cell)} (a missing value)"
         return "missing", f"found {what}; {expected}. {LEAVE_OUT}"
     if advice := comma_advice(cell):
+        if "." in cell and "," in cell[cell.rfind(".") :]:  # other cells had decimal commas, perhaps
+            advice += f" ({cell.replace('.', '')} where the file has decimal commas)"
         return "comma", f"found {quoted(cell, _LONGEST_SHOWN)}, {advice}; {expected}"
     if value != value:
         return "text", f"found {quoted(cell, _LONGEST_SHOWN)}, which is not a number; {expected}"
@@ -109,12 +119,12 @@ def read_labels(
     for row, cell in enumerate(cells):
         if cell == "" and (missing == "keep" or name not in vocabulary.LABELS):
             continue  # a model that uses the column asks for values
-        if cell == "" or len(cell) > _LONGEST_LABEL or not cell.isprintable():
+        if cell == "" or len(cell) > LONGEST_LABEL or not cell.isprintable():
             found = "an empty cell" if cell == "" else quoted(cell, _LONGEST_SHOWN)
             problems.add(
                 table.lines[row],
                 position,
-                f", column '{name}': found {found}; expected 1 to {_LONGEST_LABEL} printable characters"
+                f", column '{name}': found {found}; expected 1 to {LONGEST_LABEL} printable characters"
                 + (f". {LEAVE_OUT}, {DROP}" if cell == "" else ""),
                 "label",
             )
@@ -164,7 +174,7 @@ def read_columns(
         if unit is None:
             columns[name] = read_labels(table, position, name, problems, missing)
         elif quantity is None:
-            columns[name] = np.array([_number(cell) for cell in table.column(position)])
+            columns[name] = np.array([number_in(cell) for cell in table.column(position)])
             units[name] = unit
         else:
             spread = vocabulary.spread_of(name) is not None
@@ -226,7 +236,7 @@ def _identify(header: str, cells: list[str]) -> tuple[str, Quantity | None, str 
         unit = unit or "1"
     if name == "":
         raise InputError("a column without a name; give it one, or remove it")
-    if not header.isprintable() or len(header) > _LONGEST_LABEL:
+    if not header.isprintable() or len(header) > LONGEST_LABEL:
         raise InputError(f"column {quoted(header, _LONGEST_SHOWN)}: expected a name of printable characters")
     if name in vocabulary.LABELS and unit is not None:
         raise InputError(f"column '{name}' holds labels; expected no unit, found '[{unit[:40]}]'")
@@ -280,16 +290,13 @@ def _guess(name: str, unit: str | None) -> str:
     known = known_names()
     for base, apart in _split_units(name):
         for match, _ in vocabulary.meant(base, known):
-            quantity = vocabulary.lookup(match)
-            written = unit or apart
-            if quantity is None or not (written and _converts(written, quantity.unit)):
-                continue
-            where = "" if unit else ", with the unit in square brackets"
-            return f"{vocabulary.suggestions(base, known)} Write '{match} [{written}]'{where}"
-    said = _meant(name)
+            quantity, written = vocabulary.lookup(match), unit or apart
+            if quantity is not None and written and converts(written, quantity.unit):
+                where = "" if unit else ", with the unit in square brackets"
+                return f"{vocabulary.suggestions(base, known)} Write '{match} [{written}]'{where}"
     found = vocabulary.meant(name, known)
-    quantity = vocabulary.lookup(found[0][0]) if len(found) == 1 else None
-    return f"{said} Write '{quantity.name} [{quantity.unit}]'" if quantity is not None and not unit else said
+    quantity = vocabulary.lookup(found[0][0]) if len(found) == 1 and not unit else None
+    return _meant(name) + ("" if quantity is None else f" Write '{quantity.name} [{quantity.unit}]'")
 
 
 def _split_units(name: str) -> list[tuple[str, str]]:
@@ -305,11 +312,3 @@ def _split_units(name: str) -> list[tuple[str, str]]:
         base, unit = "_".join(words[:-tail]), words[-tail:]
         apart += [(base, "/".join(unit)), (base, " ".join(unit))][: len(unit)]
     return [*found, *((base, unit) for base, unit in apart if is_unit(unit))]
-
-
-def _converts(unit: str, to_unit: str) -> bool:
-    try:
-        convert_array(1.0, unit, to_unit, "")
-    except InputError:
-        return False
-    return True

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import compress
@@ -16,21 +14,17 @@ from unicodedata import normalize
 import numpy as np
 from numpy.typing import NDArray
 
-from skinbayes import vocabulary
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.columns import DROP, LEAVE_OUT, LabelArray, Missing, read_columns
+from skinbayes.files.find_dataset import find_dataset, listed, suggestions
 from skinbayes.files.given_columns import table_of_columns
-from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
-from skinbayes.files.table import Problems, quoted, read_table
+from skinbayes.files.table import Problems, csv_text, quoted, read_table
 from skinbayes.plugins import installed_forward_models
 
 if TYPE_CHECKING:
     from pandas import DataFrame
-
-DATA_FILE = "data.csv"
-PROVENANCE_FILE = "provenance.toml"
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +45,14 @@ class Dataset:
     lines : line (of a file) or row (of columns that were given) of each row; empty if not known
     dropped : those of the rows that were left out because a value is missing
     in_memory : whether there is no file
+
+    Examples
+    --------
+    Examples of methods go on from this one.
+
+    >>> data = load_dataset("adams2007-forearm-glass")
+    >>> data.n_rows, data.columns["normal_force"].tolist(), data.units["normal_force"]
+    (2, [0.5, 0.5], 'N')
     """
 
     key: str
@@ -93,6 +95,11 @@ class Dataset:
         name : stands in messages in place of a file
         missing : whether rows without a value are refused, or kept (NaN, empty labels)
 
+        Returns
+        -------
+        Dataset
+            columns in SI
+
         Raises
         ------
         InputError
@@ -111,29 +118,48 @@ class Dataset:
         return replace(made, sha256=hashlib.sha256(made.to_csv().encode()).hexdigest())
 
     def to_csv(self) -> str:
-        """The columns as a CSV in SI; read again, it has the same :attr:`fingerprint`."""
-        text = io.StringIO()
-        # quotes about headers, so that a semicolon in a name is not taken for what separates cells
-        odd = any(mark in name for name in self.columns for mark in ";\t")
-        writer = csv.writer(text, lineterminator="\n")
-        heading = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_ALL if odd else csv.QUOTE_MINIMAL)
-        heading.writerow(
-            [f"{name} [{self.units[name]}]" if name in self.units else name for name in self.columns]
-        )
-        cells = [
-            [
-                "" if value != value else repr(value) if name in self.units else value
-                for value in values.tolist()
-            ]
+        """The columns as a CSV in SI; read again, it has the same :attr:`fingerprint`.
+
+        Returns
+        -------
+        str
+            Header and rows.
+
+        Examples
+        --------
+        >>> data.to_csv().splitlines()[0][:40]
+        'state,body_site,counterface,friction_coe'
+        """
+        cells = {
+            name: [repr(v) if v == v else "" for v in values.tolist()]
+            if name in self.units
+            else values.tolist()
             for name, values in self.columns.items()
-        ]
-        writer.writerows(zip(*cells, strict=True))
-        return text.getvalue()
+        }
+        return csv_text(cells, self.units)
 
     @property
     def shown(self) -> str:
         """What people know it by: a folder with provenance by its key, a file by its own name."""
         return self.path.name if self.path.stem == self.key else self.key
+
+    @property
+    def row_word(self) -> str:
+        """What :attr:`lines` count: ``"line"`` of a file, or ``"row"``."""
+        return "row" if self.in_memory or not self.lines else "line"
+
+    def place(self, row: int) -> str:
+        """Where a row stands, for messages; ``row`` counts from 0."""
+        return f"{self.path}, {self.row_word} {self.lines[row] if self.lines else row + 1}"
+
+    def positive(self, column: str, why: str) -> FloatArray:
+        """A numeric column, shape (n_rows,); :class:`InputError` with the row and the reason unless all values are > 0."""
+        values = np.asarray(self.columns[column], dtype=float)
+        for row in np.flatnonzero(~(values > 0)).tolist():
+            raise InputError(
+                f"{self.place(row)}, {column}: found {values[row]:g}; expected a value > 0, as {why}"
+            )
+        return values
 
     @property
     def n_rows(self) -> int:
@@ -151,12 +177,26 @@ class Dataset:
         return digest.hexdigest()
 
     def labels(self, column: str) -> tuple[str, ...]:
-        """Different labels of a column, in order of appearance.
+        """Different labels of a column.
+
+        Parameters
+        ----------
+        column : a column of text
+
+        Returns
+        -------
+        tuple of str
+            In order of appearance.
 
         Raises
         ------
         InputError
             if there is no such label column
+
+        Examples
+        --------
+        >>> data.labels("state")
+        ('dry', 'wet')
         """
         return tuple(dict.fromkeys(self._label_column(column).tolist()))
 
@@ -190,7 +230,7 @@ class Dataset:
                 if label not in present:
                     raise InputError(
                         f"data set '{self.key}', column '{column}': no row is labelled {quoted(str(label))}; "
-                        f"expected one of {_listed(present)}.{_suggestions(label, present)}"
+                        f"expected one of {listed(present)}.{suggestions(label, present)}"
                     )
             keep &= np.isin(self._label_column(column), chosen)
         if not keep.any():
@@ -206,10 +246,21 @@ class Dataset:
         used : names; those that are no columns are passed over
         drop : whether rows without a value are left out, or refused
 
+        Returns
+        -------
+        Dataset
+            the same columns with these rows
+
         Raises
         ------
         InputError
             a value is missing and its row may not be dropped, or no row remains
+
+        Examples
+        --------
+        >>> gaps = Dataset.from_columns({"normal_force [N]": [0.5, None]}, missing="keep")
+        >>> gaps.complete(["normal_force"], drop=True).n_rows
+        1
         """
         empty = {
             name: np.isnan(values) if values.dtype.kind == "f" else values == ""
@@ -220,7 +271,7 @@ class Dataset:
         if keep.all():
             return self
         lines = self.lines or tuple(range(1, self.n_rows + 1))
-        problems = Problems(self.path, "row" if self.in_memory or not self.lines else "line")
+        problems = Problems(self.path, self.row_word)
         for position, (name, missing) in enumerate(empty.items()):
             for row in np.flatnonzero(missing).tolist():
                 problems.add(
@@ -240,10 +291,10 @@ class Dataset:
     def _label_column(self, column: str) -> LabelArray:
         available = [name for name in self.columns if name not in self.units]
         if column not in available:
-            has = _listed(available) if available else "none"
+            has = listed(available) if available else "none"
             raise InputError(
                 f"data set '{self.key}': no label column {quoted(str(column))}; label columns are: {has}."
-                f"{_suggestions(column, available)}"
+                f"{suggestions(column, available)}"
             )
         values: Any = self.columns[column]
         return values
@@ -255,15 +306,6 @@ def _labels(wanted: str | Sequence[str]) -> list[str]:
         normalize("NFC", label) if isinstance(label, str) else label
         for label in ([wanted] if isinstance(wanted, str) else wanted)
     ]
-
-
-def _listed(names: Sequence[str], at_most: int = 20) -> str:
-    shown = ", ".join(repr(name) for name in names[:at_most])
-    return shown + (f" and {len(names) - at_most} more" if len(names) > at_most else "")
-
-
-def _suggestions(name: object, known: Sequence[str]) -> str:
-    return vocabulary.suggestions(str(name)[:80], list(known))
 
 
 def _wish(rows: Mapping[str, Sequence[str]]) -> str:
@@ -349,43 +391,3 @@ def load_dataset(
         check_sha256(provenance, path, table.sha256, described_in)
     columns, units = read_columns(table, problems, missing)
     return Dataset(key, path, columns, units, provenance, table.sha256, lines=table.lines)
-
-
-def find_dataset(
-    name_or_path: str | Path, *, relative_to: Path | None = None
-) -> tuple[str, Path, Path | None]:
-    """Key, CSV and provenance file (None for a bare CSV) of a data set.
-
-    Raises
-    ------
-    InputError
-        if there is neither a shipped data set of this name nor such a file or folder
-    """
-    shipped = shipped_names("datasets")
-    if isinstance(name_or_path, str) and name_or_path in shipped:
-        folder = shipped_folder("datasets") / name_or_path
-        return name_or_path, folder / DATA_FILE, folder / PROVENANCE_FILE
-    if str(name_or_path).strip() == "" or "\0" in str(name_or_path):
-        raise InputError(f"data set {str(name_or_path)!r}: expected a name or the path of a CSV file")
-    path = Path(name_or_path).expanduser()
-    if relative_to is not None:
-        path = relative_to / path
-    try:
-        is_folder, is_file = path.is_dir(), path.exists()
-    except OSError:
-        is_folder = is_file = False
-    if is_folder:
-        described_in = path / PROVENANCE_FILE
-        return path.resolve().name, path / DATA_FILE, described_in if described_in.is_file() else None
-    if is_file:
-        return path.stem, path, None
-    if path.suffix.lower() == ".csv":
-        beside = sorted(found.name for found in path.parent.glob("*.csv")) if path.parent.is_dir() else []
-        raise InputError(
-            f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file."
-            f"{_suggestions(path.name, beside)}"
-        )
-    raise InputError(
-        f"data set {str(name_or_path)[:400]!r}: neither a shipped data set nor an existing file; shipped are "
-        f"{', '.join(shipped)}.{_suggestions(name_or_path, shipped)}"
-    )

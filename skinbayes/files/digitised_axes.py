@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from math import inf
 
 from skinbayes.errors import InputError
 from skinbayes.files.table import quoted
-from skinbayes.units import convert_array, describe_unit, split_header
+from skinbayes.units import convert_array, describe_unit, parse_quantity, split_header
 from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
-
-_STATED = re.compile(r"\s*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
 
 
 @dataclass(frozen=True)
@@ -104,15 +101,11 @@ def parse_reading_error(text: str, quantity: Quantity, where: str) -> ReadingErr
     >>> parse_reading_error("0.5 degC", QUANTITIES["temperature"], "--abscissa-error")
     ReadingError(relative=None, absolute=0.5)
     """
-    expected = f"expected '2 %' of the value, or an absolute error: {describe_unit(quantity.unit)}"
-    match = _STATED.fullmatch(text)
-    number = float(match[1]) if match else 0.0
-    if match is None or not 0.0 < number < inf:
-        raise InputError(f"{where}: found {quoted(text)}; {expected}")
-    if match[2] == "%":
-        return ReadingError(relative=number / 100.0)
-    if not match[2] and quantity.unit != "1":
-        raise InputError(f"{where}: {text.strip()[:40]} has no unit; {expected}")
-    return ReadingError(
-        absolute=float(convert_array(number, match[2] or "1", quantity.unit, where, difference=True))
-    )
+    relative = text.strip().endswith("%")
+    value = parse_quantity(text, "1" if relative else quantity.unit, where=where, difference=True)
+    if not 0.0 < value < inf:
+        raise InputError(
+            f"{where}: found {quoted(text)}; expected '2 %' of the value, or an absolute error > 0: "
+            f"{describe_unit(quantity.unit)}"
+        )
+    return ReadingError(relative=value) if relative else ReadingError(absolute=value)

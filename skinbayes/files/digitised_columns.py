@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf, log
 
@@ -12,10 +10,10 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.columns import refuse_quantity
+from skinbayes.files.columns import LONGEST_LABEL, refuse_quantity
 from skinbayes.files.digitised_axes import AxisMeaning
 from skinbayes.files.digitised_set import DigitisedSet
-from skinbayes.files.table import quoted
+from skinbayes.files.table import csv_text, quoted
 from skinbayes.units import convert_array, format_quantity, parse_quantity
 from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, lookup
 
@@ -23,7 +21,6 @@ PIXEL_ERROR = 1.0
 """Standard deviation of a pixel coordinate if nothing else is said, pixels."""
 
 _AXES = ("abscissa", "ordinate")
-_LONGEST_LABEL = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,17 +40,14 @@ class DigitisedTable:
 
     def csv_text(self) -> str:
         """The data set as a CSV with units in its header; reading errors are rounded to 6 digits, values to 9."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(
-            [f"{name} [{self.units[name]}]" if name in self.units else name for name in self.columns]
-        )
-        cells: list[list[str]] = []
-        for name, values in self.columns.items():
-            digits = 6 if name.endswith(STANDARD_DEVIATION_SUFFIX) else 9
-            cells.append([value if isinstance(value, str) else f"{value:.{digits}g}" for value in values])
-        writer.writerows(zip(*cells, strict=True))
-        return stream.getvalue()
+        cells = {
+            name: [
+                v if isinstance(v, str) else f"{v:.{6 if name.endswith(STANDARD_DEVIATION_SUFFIX) else 9}g}"
+                for v in values
+            ]
+            for name, values in self.columns.items()
+        }
+        return csv_text(cells, self.units)
 
 
 def digitised_table(
@@ -98,7 +92,7 @@ def digitised_table(
         columns[name] = np.concatenate([values for values, _ in read])
         columns[name + STANDARD_DEVIATION_SUFFIX] = np.concatenate([spread for _, spread in read])
         units |= {name: meaning.quantity.unit, name + STANDARD_DEVIATION_SUFFIX: meaning.quantity.unit}
-        sentences += _sentences(list(sets.items()), position, meaning, pixel_error, read)
+        sentences += _sentences(sets.values(), position, meaning, pixel_error, read)
     n_rows = len(columns[names[0]])
     for name, text in (constants or {}).items():
         if name in columns or name == label_column:
@@ -134,9 +128,9 @@ def _check_labels(sets: Mapping[str, DigitisedSet], label_column: str | None, wh
 
 
 def _check_label(label: str, where: str) -> None:
-    if not label or label != label.strip() or len(label) > _LONGEST_LABEL or not label.isprintable():
+    if not label or label != label.strip() or len(label) > LONGEST_LABEL or not label.isprintable():
         raise InputError(
-            f"{where}: found the label {quoted(label)}; expected 1 to {_LONGEST_LABEL} printable characters without blanks "
+            f"{where}: found the label {quoted(label)}; expected 1 to {LONGEST_LABEL} printable characters without blanks "
             "around them"
         )
 
@@ -202,28 +196,21 @@ def _coordinate(
 
 
 def _sentences(
-    sets: list[tuple[str, DigitisedSet]],
+    sets: Iterable[DigitisedSet],
     position: int,
     meaning: AxisMeaning,
     pixel_error: float,
     read: list[tuple[FloatArray, FloatArray]],
 ) -> list[str]:
     """How well one coordinate was read; once for data sets on the same axes."""
-    name, unit = meaning.quantity.name, meaning.quantity.unit
-    if meaning.error is not None:
-        stated = meaning.error
-        size = (
-            f"{100 * stated.relative:.3g} % of the value"
-            if stated.relative is not None
-            else format_quantity(float(stated.absolute or 0.0), unit, 3)
-        )
-        return [f"{name}: {size}, as stated by the user."]
+    quantity, stated = meaning.quantity, meaning.error
+    pixels = f"which is {pixel_error:g} pixel{'' if pixel_error == 1 else 's'} in the picture"
     said: dict[str, None] = {}
-    pixels = f"{pixel_error:g} pixel{'' if pixel_error == 1 else 's'}"
-    for (_, one), (values, spread) in zip(sets, read, strict=True):
-        if meaning.logarithmic or (one.axes is not None and one.axes.logarithmic[position]):
-            size = f"{100 * float(spread[0] / values[0]):.3g} % of the value"
+    for one, (values, spread) in zip(sets, read, strict=True):
+        relative = meaning.logarithmic or (one.axes is not None and one.axes.logarithmic[position])
+        if relative if stated is None else stated.relative is not None:
+            size = f"{100 * float(spread[0] / abs(values[0])):.3g} % of the value"
         else:
-            size = format_quantity(float(spread[0]), unit, 3)
-        said[f"{name}: {size}, which is {pixels} in the picture."] = None
+            size = format_quantity(float(spread[0]), quantity.unit, 3)
+        said[f"{quantity.name}: {size}, {pixels if stated is None else 'as stated by the user'}."] = None
     return list(said)

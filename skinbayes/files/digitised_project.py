@@ -20,10 +20,6 @@ from skinbayes.files.table import quoted
 LARGEST_PROJECT = 50_000_000
 """Bytes of a project file; the masks of automatic extraction can make it megabytes long."""
 
-MOST_SERIES = 1000
-"""Data sets, and axes, of a project; a figure has a handful."""
-
-_LISTS = ("axesColl", "datasetColl", "dataSeries")
 _AGREEMENT = 0.02  # pixels: stored and computed values are the same but for rounding
 _EXPECTED = "expected a project file of WebPlotDigitizer, format 3 or 4"
 
@@ -104,9 +100,6 @@ def _parse(data: bytes, where: str) -> tuple[str, ProjectBlock]:
     known = (3,) if old else (4, 5)
     if not (isinstance(version, list) and version and version[0] in known):
         raise InputError(f"{where}: version: found {version!r:.40}; {_EXPECTED}")
-    for key in _LISTS:
-        if isinstance(body.get(key), list) and len(body[key]) > MOST_SERIES:
-            raise InputError(f"{where}: {key}: {len(body[key])} entries; expected at most {MOST_SERIES}")
     if old:
         body = _as_version_4(body)
     try:

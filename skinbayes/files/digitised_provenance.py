@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 from skinbayes.files.digitised import DigitisedFile
 from skinbayes.files.digitised_axes import AxisMeaning
 from skinbayes.files.digitised_columns import DigitisedTable
@@ -30,6 +28,8 @@ def provenance_template(
     constants : columns that the user added
     sha256 : of the CSV
     """
+    from tomlkit import string
+
     which = ", ".join(f"'{name}'" for name in chosen)
     how = f"Digitised: {export.kind}, {export.path.name} (sha256 {export.sha256}), data set {which}"
     steps = []
@@ -45,6 +45,10 @@ def provenance_template(
         + " Neither the scatter of the measurement nor the "
         "error of the calibration, which all points share, is in them."
     )
+
+    def text(said: str) -> str:
+        return string(said).as_string()
+
     return "\n".join(
         (
             "# Complete the empty entries: the data set cannot be loaded with this file before.",
@@ -55,16 +59,11 @@ def provenance_template(
             'licence = ""                  # of the figure, or what is known about it',
             'digitised_by = ""             # who read the figure, and when',
             'kind = "measurements"',
-            f"how_read = {_text(how)}",
-            f"transformation = {_text('; '.join(steps))}",
-            f"spread = {_text(spread)}",
+            f"how_read = {text(how)}",
+            f"transformation = {text('; '.join(steps))}",
+            f"spread = {text(spread)}",
             "caveats = []                  # what a user has to know before trusting a fit",
             f'sha256 = "{sha256}"',
             "",
         )
     )
-
-
-def _text(text: str) -> str:
-    """A TOML string: JSON has the same escapes."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -8,6 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from skinbayes.files.table import MAX_ROWS
 
+MOST_SERIES = 1000
+"""Data sets, and axes, of a project; a figure has a handful."""
+
 
 class _Lenient(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True)
@@ -55,5 +58,5 @@ class SeriesBlock(_Lenient):
 class ProjectBlock(_Lenient):
     """A project file, from version 4 on."""
 
-    axesColl: list[AxesBlock]
-    datasetColl: list[SeriesBlock]
+    axesColl: list[AxesBlock] = Field(max_length=MOST_SERIES)
+    datasetColl: list[SeriesBlock] = Field(max_length=MOST_SERIES)

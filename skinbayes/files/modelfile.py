@@ -82,10 +82,6 @@ class ModelSpec:
         return self.path.parent == shipped_folder("models")
 
 
-RETIRED = ("capillary-film", "drying", "drying-glass", "humid-air")
-"""Models of which there was a second file for sharp gaps, called '…-delta'."""
-
-
 def find_model(name: str | Path) -> Path:
     """Return the file of a shipped model, or the given path.
 
@@ -93,12 +89,6 @@ def find_model(name: str | Path) -> Path:
     """
     text = str(name)
     shipped = shipped_names("models")
-    if text.removesuffix("-delta") in RETIRED and text.endswith("-delta"):
-        base = text.removesuffix("-delta")
-        raise InputError(
-            f"the model '{text}' is now an option of '{base}': predict it with 'skinbayes predict {base} --set closure=sharp'; "
-            f"to fit it, write a copy with 'skinbayes new {base} -o mine.toml' and add a table [options] with closure = \"sharp\""
-        )
     if text in shipped:
         return shipped_folder("models") / f"{text}.toml"
     path = Path(text)
@@ -160,12 +150,16 @@ def read_model(content: Mapping[str, Any], path: Path, text: str) -> ModelSpec:
 
 
 def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
-    parameters = _read_parameters(block.parameters, where)
-    data, noise = block.data, block.noise
+    data, surface, rheology = block.data, block.surface, block.rheology
     families: dict[str, str] = {}
     noise_parameters: tuple[ParameterSpec, ...] = ()
-    if data is not None and noise is not None:
-        families, noise_parameters = read_noise(noise, data.names(), data.observables is not None, where)
+    of_data: dict[str, Any] = {}
+    if data is not None and block.noise is not None:
+        names, several = data.names(), data.observables is not None
+        families, noise_parameters = read_noise(block.noise, names, several, where)
+        rows = {key: tuple(levels) for key, levels in data.rows.items()}
+        of_data = data.model_dump(include={"spread", "input_spread", "missing"})
+        of_data |= {"observables": tuple(names), "rows": rows}
     covariates, exponents = read_covariates(block.covariates, where)
 
     def resolved(table: DataBlock | RheologyBlock | None) -> str | None:
@@ -173,13 +167,8 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
             return None if table is None else table.dataset
         return str((path.parent / table.file).resolve())
 
-    rheology = block.rheology
     if rheology is not None:
         label_column(rheology.by, where("rheology", "by"))
-    surface = block.surface
-    surface_file = None
-    if surface is not None and surface.file is not None:
-        surface_file = (path.parent / surface.file).resolve()
     return ModelSpec(
         name=path.stem,
         path=path,
@@ -188,15 +177,12 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         description=block.description.strip(),
         forward=block.forward,
         options=block.options,
-        parameters=parameters,
+        parameters=_read_parameters(block.parameters, where),
         dataset=resolved(data),
-        rows={} if data is None else {key: tuple(levels) for key, levels in data.rows.items()},
-        observables=() if data is None else tuple(data.names()),
-        spread=None if data is None else data.spread,
-        input_spread=None if data is None else data.input_spread,
-        missing=None if data is None else data.missing,
         surface_name=None if surface is None else surface.name,
-        surface_file=surface_file,
+        surface_file=None
+        if surface is None or surface.file is None
+        else (path.parent / surface.file).resolve(),
         noise=families,
         noise_parameters=noise_parameters,
         groups=read_groups(block.groups, families, where),
@@ -209,6 +195,7 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
             key: _read_grid(key, grid, where("conditions", key)) for key, grid in block.conditions.items()
         },
         baseline_models=_read_baseline_models(block, path, where("baseline_models")),
+        **of_data,
     )
 
 

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-LARGEST_POWER = 100
+Power = Annotated[float | int, Field(ge=-100, le=100)]
 
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
-def _one_of_two(first: object, second: object, first_name: str, second_name: str) -> None:
-    if (first is None) == (second is None):
-        raise ValueError(f"give either {first_name} or {second_name}")
+def _either(**fields: str) -> Any:
+    """A validator that wants exactly one of the fields, each with what it is."""
+
+    def check(block: Any) -> Any:
+        if sum(getattr(block, name) is not None for name in fields) != 1:
+            raise ValueError(f"give either {' or '.join(f'{name!r}{what}' for name, what in fields.items())}")
+        return block
+
+    return model_validator(mode="after")(check)
 
 
 class DataBlock(_Strict):
@@ -36,9 +42,10 @@ class DataBlock(_Strict):
             raise ValueError("give 'dataset' (a shipped data set) or 'file' (the path of a CSV), not both")
         return self
 
+    _observed = _either(observable="", observables=" (a list of several)")
+
     @model_validator(mode="after")
-    def _something_observed(self) -> DataBlock:
-        _one_of_two(self.observable, self.observables, "'observable'", "'observables' (a list of several)")
+    def _each_once(self) -> DataBlock:
         if len(set(self.names())) < len(self.names()):
             raise ValueError(f"'observables' names one twice: {', '.join(self.names())}")
         return self
@@ -55,10 +62,7 @@ class SurfaceBlock(_Strict):
     name: str | None = None
     file: str | None = None
 
-    @model_validator(mode="after")
-    def _one_source(self) -> SurfaceBlock:
-        _one_of_two(self.name, self.file, "'name' (a named surface)", "'file' (the path of a spectrum CSV)")
-        return self
+    _source = _either(name=" (a named surface)", file=" (the path of a spectrum CSV)")
 
 
 class RheologyBlock(_Strict):
@@ -68,10 +72,7 @@ class RheologyBlock(_Strict):
     file: str | None = None
     by: str
 
-    @model_validator(mode="after")
-    def _one_source(self) -> RheologyBlock:
-        _one_of_two(self.dataset, self.file, "'dataset' (a shipped data set)", "'file' (the path of a CSV)")
-        return self
+    _source = _either(dataset=" (a shipped data set)", file=" (the path of a CSV)")
 
 
 class GroupBlock(_Strict):
@@ -92,21 +93,10 @@ class CovariateBlock(_Strict):
 class DerivedBlock(_Strict):
     """``[derived.NAME]``: a product of powers of parameters and intermediate quantities, for all or some rows."""
 
-    product: dict[str, float | int]
+    product: dict[str, Power] = Field(min_length=1)
     rows: dict[str, list[str]] = Field(default_factory=dict)
     meaning: str = ""
     symbol: str = ""
-
-    @model_validator(mode="after")
-    def _not_empty(self) -> DerivedBlock:
-        if not self.product:
-            raise ValueError("'product' names no factor")
-        for factor, power in self.product.items():
-            if not abs(power) <= LARGEST_POWER:
-                raise ValueError(
-                    f"power {power} of '{factor}'; expected a finite number up to {LARGEST_POWER}"
-                )
-        return self
 
 
 class GridBlock(_Strict):
@@ -150,13 +140,6 @@ class ModelBlock(_Strict):
     derived: dict[str, DerivedBlock] = Field(default_factory=dict)
     conditions: dict[str, GridBlock] = Field(default_factory=dict)
     baseline_models: list[str] = Field(default_factory=list)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _retired(cls, content: Any) -> Any:
-        if isinstance(content, dict) and "yardsticks" in content:
-            raise ValueError("'yardsticks' is called 'baseline_models' now")
-        return content
 
     @model_validator(mode="after")
     def _data_need_noise(self) -> ModelBlock:

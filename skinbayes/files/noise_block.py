@@ -7,8 +7,10 @@ from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.files.parameter_block import ParameterSpec, parse_levels, parse_parameter
+from skinbayes.plugins import NOISE_FAMILIES as ENTRY_POINTS
+from skinbayes.plugins import check_name, installed
 from skinbayes.statistics.noise import NoiseFamily
-from skinbayes.statistics.noise_families import NOISE_FAMILIES
+from skinbayes.statistics.noise_families import NOISE_FAMILIES, register_noise
 from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
 
 NOISE_PARAMETERS = ("noise_scale", "discrepancy_factor", "discrepancy_scale")
@@ -17,6 +19,16 @@ NOISE_PARAMETERS = ("noise_scale", "discrepancy_factor", "discrepancy_scale")
 
 OBSERVABLE = "observable"
 """What the noise of a model with several observables differs by."""
+
+
+def unusable_noise_families() -> dict[str, str]:
+    """What is wrong with noise families of installed packages that cannot be used; the others become known."""
+    return installed(ENTRY_POINTS, _accept)[1]
+
+
+def _accept(name: str, family: NoiseFamily) -> None:
+    check_name(name, family, "NoiseFamily")
+    register_noise(family)
 
 
 def noise_parameter_names() -> tuple[str, ...]:
@@ -80,9 +92,13 @@ def _one_observable(
     where: Callable[..., str],
     place: tuple[str, ...],
 ) -> tuple[str, tuple[ParameterSpec, ...]]:
-    family = block.get("family")
+    family, broken = block.get("family"), unusable_noise_families()
     names = list(NOISE_FAMILIES)
     if family not in names:
+        if str(family) in broken:
+            raise InputError(
+                f"{where(*place, 'family')}: the noise family '{family}' is {broken[str(family)]}"
+            )
         hint = suggestions(str(family), names)
         raise InputError(
             f"{where(*place, 'family')}: found {family!r}.{hint} Expected one of {', '.join(names)}"

@@ -12,8 +12,8 @@ import numpy as np
 
 from skinbayes.errors import InputError
 from skinbayes.statistics.priors import FAMILIES, Prior, make_prior
-from skinbayes.units import parse_quantity
-from skinbayes.vocabulary import LABELS, Quantity, lookup, suggestions
+from skinbayes.units import parse_quantity, unit_example
+from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, lookup, suggestions
 
 RESERVED_NAMES = ("chain", "draw", "row")
 """Dimensions of results."""
@@ -48,6 +48,13 @@ class ParameterSpec:
     by_column: bool = False
     same_as: str | None = None
     times: float = 1.0
+
+    @classmethod
+    def of_value(
+        cls, name: str, value: float, source: str, entry: Mapping[str, Any] | None = None
+    ) -> ParameterSpec:
+        """A parameter that has one value, in SI, at all rows."""
+        return cls(name, QUANTITIES[name].unit, None, None, value, None, entry, source)
 
     @property
     def label(self) -> str:
@@ -262,7 +269,5 @@ def _as_written(raw: Any) -> str:
 
 
 def _example(unit: str) -> str:
-    text = {"Pa": '"15 MPa"', "m": '"20 um"', "1": "0.4", "N": '"0.5 N"', "1/m": '"1e3 1/m"'}.get(
-        unit, f'"1 {unit}"'
-    )
+    text = unit_example(unit) if unit == "1" else f'"{unit_example(unit)}"'
     return f'{{ lognormal = [{text}, 0.5], source = "…" }} or {{ fixed = {text} }}'

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,16 +9,15 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import find_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.provenance import Provenance, check_sha256, load_provenance
 from skinbayes.files.table import quoted, read_table
+from skinbayes.units import NUMBER
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 Cell = str | float | None
-
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,21 +74,16 @@ def load_reference(name_or_path: str | Path) -> ReferenceTable:
         raise InputError(f"data set '{key}' holds measurements, not reference values; load it as a data set")
     table = read_table(path)
     check_sha256(provenance, path, table.sha256, described_in)
-    headers = tuple(header.strip() for header in table.header)
-    for position, header in enumerate(headers):
-        if header == "" or header in headers[:position]:
-            raise InputError(
-                f"{path}, line {table.header_line}: column {quoted(header)} is unnamed or appears twice"
-            )
-    cells = {header: _cells(table.column(position)) for position, header in enumerate(headers)}
-    rows = tuple(
-        MappingProxyType({header: cells[header][index] for header in headers})
-        for index in range(len(table.rows))
+    if bad := [h for i, h in enumerate(table.header) if not h or h in table.header[:i]]:
+        raise InputError(f"{table.header_place}: column {quoted(bad[0])} is unnamed or appears twice")
+    columns = [_cells(table.column(position)) for position in range(len(table.header))]
+    rows = (
+        MappingProxyType(dict(zip(table.header, cells, strict=True))) for cells in zip(*columns, strict=True)
     )
-    return ReferenceTable(key, path, headers, rows, provenance, table.sha256)
+    return ReferenceTable(key, path, table.header, tuple(rows), provenance, table.sha256)
 
 
 def _cells(column: list[str]) -> list[Cell]:
-    if all(cell == "" or _NUMBER.fullmatch(cell) for cell in column):
+    if all(cell == "" or NUMBER.fullmatch(cell) for cell in column):
         return [float(cell) if cell else None for cell in column]
     return [cell or None for cell in column]

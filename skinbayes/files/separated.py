@@ -93,7 +93,7 @@ def numbered_lines(text: str, path: Path) -> Iterator[tuple[int, str]]:
 
 
 class Records:
-    """Rows of separated text with the numbers of their first lines; comments and empty lines between them are left out.
+    """Rows of separated text with the numbers of their first lines; empty lines, and comments if there are any, are left out.
 
     Attributes
     ----------
@@ -102,12 +102,12 @@ class Records:
     comment : the last comment
     """
 
-    def __init__(self, text: str, path: Path, separator: str = "") -> None:
+    def __init__(self, text: str, path: Path, separator: str = "", comments: bool = True) -> None:
         self.separator = separator or _separator(text, path)
         self.header: tuple[str, ...] = ()
         self.comment = ""
         self._path, self._lines = path, numbered_lines(text, path)
-        self._first, self._inside = 0, False
+        self._first, self._inside, self._comments = 0, False, comments
         self._reader = csv.reader(self._feed(), **self._dialect())
 
     def __iter__(self) -> Records:
@@ -132,7 +132,7 @@ class Records:
             if not self._inside:
                 if not line.strip() or (number == 1 and _STATED.fullmatch(line)):
                     continue
-                if line.lstrip().startswith("#") and not self._may_be_row(line):
+                if self._comments and line.lstrip().startswith("#") and not self._may_be_row(line):
                     self.comment = line
                     continue
                 self._first, self._inside = number, True
@@ -192,23 +192,26 @@ def with_points(
         stand between thousands
     """
     numeric = {i for i, name in enumerate(header) if "[" in name}
-    seen: dict[tuple[str, bool], str] = {}
+    seen: dict[tuple[str, bool], tuple[str, str]] = {}
     for line, row in zip(lines, rows, strict=True):
         for i in numeric:
             cell = row[i].strip()
             if ("," in cell or "." in cell) and (fraction := _FRACTION.fullmatch(cell)):
                 thousand = _THOUSAND.fullmatch(cell) is not None
-                seen.setdefault((fraction["mark"], thousand), f"'{cell[:20]}' (line {line})")
+                seen.setdefault((fraction["mark"], thousand), (cell[:20], f"'{cell[:20]}' (line {line})"))
     comma, point = (seen.get((mark, False)) or seen.get((mark, True)) for mark in ",.")
+    number = point[0] if point and (".", False) not in seen else ""  # whose point may stand between thousands
     if separator != "," and comma and point:
-        raise InputError(
-            f"{path}: found {comma} and {point}; expected one decimal separator in all numbers of a file, and none between "
-            "thousands"
+        way_out = (
+            f": {number.replace('.', '')}, or {number.replace('.', ',')} if it is decimal" if number else ""
         )
-    if separator == ";" and point and (".", False) not in seen:
-        number = point[1 : point.index("'", 1)]
         raise InputError(
-            f"{path}: found {point} between semicolons, where a point may stand before decimals or between thousands; write "
+            f"{path}: found {comma[1]} and {point[1]}; expected one decimal separator in all numbers of a file, and none "
+            f"between thousands{way_out}"
+        )
+    if separator == ";" and point and number:
+        raise InputError(
+            f"{path}: found {point[1]} between semicolons, where a point may stand before decimals or between thousands; write "
             f"{number}0 if it is decimal, {number.replace('.', '')} if it is a thousand's"
         )
     if point or (",", False) not in seen:

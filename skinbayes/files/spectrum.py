@@ -15,10 +15,13 @@ from skinbayes.units import describe_unit, split_header
 from skinbayes.vocabulary import Quantity, suggestions
 
 # Ranges far wider than any surface, from kilometres to below atoms; they keep powers of the values finite.
-_WAVEVECTOR = Quantity("wavevector", "q", "1/m", "roughness wavevector, 2π/wavelength", 1e-3, 1e12, False)
-_POWER = {
-    "power_spectrum_2d": Quantity("power_spectrum_2d", "C", "m^4", "two-dimensional", 1e-80, 1e10, False),
-    "power_spectrum_1d": Quantity("power_spectrum_1d", "C1D", "m^3", "of line profiles", 1e-80, 1e10, False),
+_QUANTITIES = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("wavevector", "q", "1/m", "roughness wavevector, 2π/wavelength", 1e-3, 1e12, False),
+        Quantity("power_spectrum_2d", "C", "m^4", "two-dimensional", 1e-80, 1e10, False),
+        Quantity("power_spectrum_1d", "C1D", "m^3", "of line profiles", 1e-80, 1e10, False),
+    )
 }
 MAX_ROWS = {"power_spectrum_2d": 10_000, "power_spectrum_1d": 500}
 """Rows of a spectrum: the cost of a likelihood grows with the rows of a two-dimensional spectrum, that of the
@@ -57,17 +60,17 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
     table = read_table(path, max_rows=max(MAX_ROWS.values()))
     named = _columns(table)
     problems = Problems(path)
-    position, unit = named["wavevector"]
-    wavevector = read_quantity(table, position, _WAVEVECTOR, unit, problems)
-    power_name = next(name for name in _POWER if name in named)
+    (power_name,) = named.keys() - {"wavevector"}
     if len(table.rows) > MAX_ROWS[power_name]:
         raise InputError(
             f"{path}: {len(table.rows)} rows of {power_name}; expected at most {MAX_ROWS[power_name]}: average "
             "the spectrum over bands of wavevectors"
         )
-    power_position, power_unit = named[power_name]
-    power = read_quantity(table, power_position, _POWER[power_name], power_unit, problems)
-    _check_increasing(table, position, wavevector, unit, problems)
+    wavevector, power = (
+        read_quantity(table, named[name][0], _QUANTITIES[name], named[name][1], problems)
+        for name in ("wavevector", power_name)
+    )
+    _check_increasing(table, *named["wavevector"], wavevector, problems)
     problems.raise_if_any()
     if len(wavevector) < 2:
         raise InputError(
@@ -86,14 +89,15 @@ def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
     """Position and unit of each column; InputError for anything but one wavevector and one spectrum."""
     where = f"{table.path}, line {table.header_line}"
     named: dict[str, tuple[int, str]] = {}
-    known = ["wavevector", *_POWER]
+    known = list(_QUANTITIES)
     names = [split_header(header)[0] for header in table.header]
     if not any(name in known or suggestions(name, known) for name in names):
         # nothing of a file that is no spectrum is quoted: a model may name any file there is
         raise InputError(f"{where}: no column of a spectrum; {_EXPECTED}")
     for position, header in enumerate(table.header):
         name, unit = split_header(header)
-        if name != "wavevector" and name not in _POWER:
+        quantity = _QUANTITIES.get(name)
+        if quantity is None:
             guess = suggestions(name, known)
             raise InputError(
                 f"{where}: unknown column {quoted(header.strip())}; {_EXPECTED}.{guess}".rstrip(".")
@@ -101,8 +105,7 @@ def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
         if name in named:
             raise InputError(f"{where}: column '{name}' appears twice; {_EXPECTED}")
         if not unit:
-            si = "1/m" if name == "wavevector" else _POWER[name].unit
-            raise InputError(f"{where}: column '{name}' has no unit; expected {describe_unit(si)}")
+            raise InputError(f"{where}: column '{name}' has no unit; expected {describe_unit(quantity.unit)}")
         named[name] = position, unit
     if "wavevector" not in named or len(named) != 2:
         raise InputError(f"{where}: found the columns {', '.join(named)}; {_EXPECTED}")
@@ -110,7 +113,7 @@ def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
 
 
 def _check_increasing(
-    table: CsvTable, position: int, values: FloatArray, unit: str, problems: Problems
+    table: CsvTable, position: int, unit: str, values: FloatArray, problems: Problems
 ) -> None:
     cells = table.column(position)
     for row in np.flatnonzero(values[1:] <= values[:-1]).tolist():

@@ -5,15 +5,17 @@ Nothing here knows quantities; it makes sure that what comes out is a rectangula
 
 from __future__ import annotations
 
+import csv
 import hashlib
-import re
-from collections.abc import Iterator
+import io
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from skinbayes.errors import NEXT_PROBLEM, InputError
 from skinbayes.files.reading import read_file
-from skinbayes.files.separated import Records, decoded, numbered_lines, with_points
+from skinbayes.files.separated import Records, decoded, with_points
+from skinbayes.units import NUMBER
 
 MAX_ROWS = 100_000
 """Rows of data that are read. A likelihood holds a batch of parameter vectors times rows in memory: with 64
@@ -24,8 +26,6 @@ LARGEST_TABLE = 100_000_000
 
 MOST_COLUMNS = 1000
 """Columns of a table."""
-
-_DIGITS = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 MOST_SHOWN = 10
 """Problems of a file that a message lists."""
@@ -101,6 +101,17 @@ def quoted(text: str, longest: int = 40) -> str:
     return repr(text if len(text) <= longest else text[: longest - 3] + "...")
 
 
+def csv_text(columns: Mapping[str, Sequence[str]], units: Mapping[str, str]) -> str:
+    """Columns of text as a CSV that `read_table` reads, with the unit of each that has one in its header."""
+    text = io.StringIO()
+    # quotes about headers, so that a semicolon in a name is not taken for what separates cells
+    odd = any(mark in name for name in columns for mark in ";\t")
+    heading = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_ALL if odd else csv.QUOTE_MINIMAL)
+    heading.writerow([f"{name} [{units[name]}]" if name in units else name for name in columns])
+    csv.writer(text, lineterminator="\n").writerows(zip(*columns.values(), strict=True))
+    return text.getvalue()
+
+
 def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | None = None) -> CsvTable:
     """Read a table of text: one header line, comments, cells separated by commas, semicolons or tabs.
 
@@ -172,20 +183,8 @@ def _length(cells: tuple[str, ...], expected: int) -> str:
     return found
 
 
-def text_lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Number (from 1) and text of every line of a file, without line ends.
-
-    Raises
-    ------
-    InputError
-        for an unreadable, binary or wrongly encoded file, or a line too long for a table
-    """
-    for number, line in numbered_lines(decoded(read_file(path, LARGEST_TABLE, "a CSV file"), path), path):
-        yield number, line.rstrip("\n")
-
-
 def _check_header(header: tuple[str, ...], comment: str, where: str) -> None:
-    if all(_DIGITS.fullmatch(cell.strip()) for cell in header):
+    if all(NUMBER.fullmatch(cell.strip()) for cell in header):
         hint = "; the header above it begins with #: remove the #" if "[" in comment else ""
         raise InputError(
             f"{where}: found numbers; expected a header line first, such as 'normal_force [N]'{hint}"

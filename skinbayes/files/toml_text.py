@@ -21,16 +21,12 @@ LARGEST_FILE = 1_000_000
 
 
 _DEEPEST = 20
-"""Tables and lists in one another, and parts of a dotted key; a model file has four."""
+"""Parts of a dotted key; a model file has four."""
 
 _LARGEST_INTEGER = 2**63
 """TOML promises no larger ones, and powers of larger ones are no numbers."""
 
-_TOKEN = re.compile(
-    r'"""(?:\\[\s\S]|(?!""")[^\\])*+"""|"(?:\\.|[^"\\\n])*+"'
-    r"|\'\'\'(?:(?!\'\'\')[\s\S])*+\'\'\'|\'[^\'\n]*+\'"
-    r"|#[^\n]*+|[\[\]{}.=,\n]"
-)
+_DEEP_KEY = re.compile(rf"(?<![\w\"'-])[\w\"'-]++(?:\s?\.\s?[\w\"'-]++){{{_DEEPEST}}}")
 
 
 def read_text(path: Path) -> str:
@@ -59,7 +55,9 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
         or has integers of more than 64 bits; names the line.
     """
     text = read_text(path)
-    _refuse_depth(path, text)  # the parser takes time that grows with the square of the depth
+    if deep := _DEEP_KEY.search(text):  # the parser takes time that grows with the square of the depth
+        line = text.count("\n", 0, deep.start()) + 1
+        raise InputError(f"{path}, line {line}: nested too deeply to be a model file")
     try:
         content = tomllib.loads(text.replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
@@ -70,31 +68,12 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
             reason += " – a key or table stands here a second time"
         at = f", line {found[1]}, column {found[2]}" if found else ""
         raise InputError(f"{path}{at}: not valid TOML: {reason:.200}") from None
+    except RecursionError:
+        raise InputError(f"{path}: nested too deeply to be a model file") from None
     except ValueError as error:  # an integer of thousands of digits, a date that no calendar has
         raise InputError(f"{path}: not valid TOML: {str(error).partition(';')[0]:.200}") from None
     _refuse_large_integers(content, Places(path, text))
     return (content if text.isascii() else _composed(content)), text
-
-
-def _refuse_depth(path: Path, text: str) -> None:
-    depth, parts, line = 0, 0, 1
-    for found in _TOKEN.finditer(text):
-        token = found[0]
-        match token[0]:
-            case "[" | "{":
-                depth += 1
-            case "]" | "}":
-                depth -= 1
-            case ".":
-                parts += 1
-            case "\n":
-                line += 1
-            case _:
-                line += token.count("\n")
-        if token in ("[", "{", "=", ",", "\n"):
-            parts = 0
-        if depth > _DEEPEST or parts > _DEEPEST:
-            raise InputError(f"{path}, line {line}: nested too deeply to be a model file")
 
 
 def _refuse_large_integers(item: Any, places: Places, keys: tuple[str, ...] = ()) -> None:

@@ -83,7 +83,7 @@ def assembled(
         found["first_invalid"] = dict(zip(problem.names, values, strict=True))
     sampling = {"engine": engine, "seed": seed, **found, "log_evidence": draws.log_evidence}
     provenance = _provenance(problem, package)
-    provenance["references"] = [reference.to_dict() for reference in references(problem, engine)]
+    provenance["references"] = [_plain(vars(reference)) for reference in references(problem, engine)]
     return groups, provenance | {"sampling": _plain(sampling)}
 
 

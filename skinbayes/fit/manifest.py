@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Annotated, TypeAlias
+
+from pydantic import AfterValidator, TypeAdapter, ValidationError
 
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError
@@ -23,6 +25,17 @@ BASELINE_MODELS = "baseline-models"
 MARK = "skinbayes run "
 FORMAT = f"{MARK}2"
 """Under the key ``format`` of ``run.json``: the mark of a run directory. Nobody else writes it by chance."""
+
+
+def _inside(path: str) -> str:
+    """Refuse a path that leads out of the run directory."""
+    parts = PurePosixPath(path)
+    if "\0" in path or parts.is_absolute() or ".." in parts.parts:
+        raise ValueError("it leads out of the run directory")
+    return path
+
+
+Inside: TypeAlias = Annotated[str, AfterValidator(_inside)]
 
 
 @dataclass(frozen=True)
@@ -43,12 +56,12 @@ class Manifest:
     model: str
     fingerprint: str
     engine: str
-    data: str | None = None
-    surface: str | None = None
-    rheology: str | None = None
+    data: Inside | None = None
+    surface: Inside | None = None
+    rheology: Inside | None = None
     settings: Mapping[str, str] = field(default_factory=dict)
     rows: Mapping[str, list[str]] | None = None
-    files: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[Inside, str] = field(default_factory=dict)
 
     def inputs(self) -> list[str]:
         """The files that the run was made from."""
@@ -73,10 +86,10 @@ def read_manifest(directory: Path) -> Manifest | None:
         raise other_version(directory / RUN, note["format"], FORMAT)
     if note.get("format") != FORMAT:
         raise DamagedFile(f"'format' is not {FORMAT!r}")
-    for name, accepts in _ACCEPTED.items():
-        if not accepts(note.get(name)):
-            raise DamagedFile(f"'{name}' is not as this version writes it")
-    return Manifest(**{name: note[name] for name in _ACCEPTED})
+    try:
+        return TypeAdapter(Manifest).validate_python({key: note[key] for key in note if key != "format"})
+    except ValidationError as error:
+        raise DamagedFile(f"'{error.errors()[0]['loc'][0]}' is not as this version writes it") from None
 
 
 def other_version(file: Path, found: object, expected: object) -> InputError:
@@ -102,34 +115,3 @@ def trouble(directory: Path, manifest: Manifest) -> dict[str, str]:
         elif file_digest(path) != manifest.files[name]:
             found[name] = "damaged, or changed since the run was made (its sha256 is another)"
     return found
-
-
-def _text(value: Any) -> bool:
-    return isinstance(value, str)
-
-
-def _inside(value: Any) -> bool:
-    """Whether a value is a path that stays inside the run directory."""
-    path = PurePosixPath(value) if _text(value) and "\0" not in value else PurePosixPath("/")
-    return not path.is_absolute() and ".." not in path.parts
-
-
-def _mapping(value: Any, key: Callable[[Any], bool], item: Callable[[Any], bool]) -> bool:
-    return isinstance(value, dict) and all(key(k) and item(v) for k, v in value.items())
-
-
-def _labels(value: Any) -> bool:
-    return isinstance(value, list) and all(map(_text, value))
-
-
-_ACCEPTED: dict[str, Callable[[Any], bool]] = {
-    "model": _text,
-    "fingerprint": _text,
-    "engine": _text,
-    "data": lambda value: value is None or _inside(value),
-    "surface": lambda value: value is None or _inside(value),
-    "rheology": lambda value: value is None or _inside(value),
-    "settings": lambda value: _mapping(value, _text, _text),
-    "rows": lambda value: value is None or _mapping(value, _text, _labels),
-    "files": lambda value: _mapping(value, _inside, _text),
-}

@@ -7,25 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.fit.bibliography import (
-    ARVIZ,
-    CAPILLARY,
-    DIFFERENTIAL_EVOLUTION,
-    DYNESTY,
-    ELASTOPLASTIC,
-    EMCEE,
-    FLOW_FACTORS,
-    GAPS,
-    MIXED_LUBRICATION,
-    NESTED_SAMPLING,
-    PERSSON_2001,
-    PERSSON_2013,
-    R_HAT,
-    SEPARATION,
-    YANG_PERSSON,
-    Reference,
-    key_of,
-)
+from skinbayes.fit.bibliography import Reference, key_of, works
 from skinbayes.version import __version__
 
 if TYPE_CHECKING:
@@ -39,10 +21,10 @@ LUBRICATED = {"viscosity", "speed_viscosity_product"}
 
 
 METHODS = {
-    "emcee": (EMCEE, DIFFERENTIAL_EVOLUTION, R_HAT),
-    "nested": (DYNESTY, NESTED_SAMPLING),
+    "emcee": ("foremanmackey2013emcee", "terbraak2006markov", "vehtari2021rank"),
+    "nested": ("speagle2020dynesty", "skilling2006nested"),
 }
-"""What to cite for an engine."""
+"""Keys of what to cite for an engine."""
 
 
 def references(problem: Problem, engine: str = "emcee") -> list[Reference]:
@@ -52,7 +34,10 @@ def references(problem: Problem, engine: str = "emcee") -> list[Reference]:
     that is finite, capillary bridges, a lubricant. A model without contact mechanics cites none.
     """
     origin = [] if problem.dataset is None else data_reference(problem.dataset)
-    return [*_theory(problem), *origin, *METHODS.get(engine, ()), ARVIZ, software()]
+    known = works()
+    theory = [known[key] for key in _theory(problem)]
+    methods = [known[key] for key in (*METHODS.get(engine, ()), "kumar2019arviz")]
+    return [*theory, *origin, *methods, software()]
 
 
 def data_reference(dataset: Dataset) -> list[Reference]:
@@ -72,7 +57,8 @@ def software() -> Reference:
     )  # fmt: skip
 
 
-def _theory(problem: Problem) -> list[Reference]:
+def _theory(problem: Problem) -> list[str]:
+    """Keys of the works whose equations enter the model."""
     if not problem.forward.uses_surface:
         return []
     names = set(problem.forward.input_names())
@@ -83,14 +69,14 @@ def _theory(problem: Problem) -> list[Reference]:
 
     bridges, liquid = bool(BRIDGES & names), bool(LUBRICATED & names)
     used = {
-        PERSSON_2013: True,
-        PERSSON_2001: True,
-        YANG_PERSSON: bridges or liquid or is_used("area_correction", 1.0),
-        ELASTOPLASTIC: is_used("yield_stress", np.inf),
-        SEPARATION: bridges or liquid,
-        GAPS: bridges or liquid,
-        CAPILLARY: bridges,
-        MIXED_LUBRICATION: liquid,
-        FLOW_FACTORS: liquid,
+        "persson2013skin": True,
+        "persson2001theory": True,
+        "yang2008contact": bridges or liquid or is_used("area_correction", 1.0),
+        "persson2001elastoplastic": is_used("yield_stress", np.inf),
+        "persson2007relation": bridges or liquid,
+        "almqvist2011interfacial": bridges or liquid,
+        "persson2008capillary": bridges,
+        "persson2009transition": liquid,
+        "persson2011lubricated": liquid,
     }
-    return [reference for reference, needed in used.items() if needed]
+    return [key for key, needed in used.items() if needed]

@@ -31,6 +31,16 @@ class FitResult:
         are thinned to near independence and ordered in time. All values in SI.
     provenance : versions, model text, data source, and under ``sampling`` engine, seed and its diagnostics by name
     problem : the problem, or None if the result was read from a file whose model or data are gone
+
+    Examples
+    --------
+    Examples of methods go on from this one. Its draws are those of the prior, which are quick to make.
+
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-water")
+    >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 500))
+    >>> fit.name, fit.names[0]
+    ('finger-water', 'frictional_shear_stress')
     """
 
     groups: Mapping[str, xarray.Dataset]
@@ -53,7 +63,28 @@ class FitResult:
         return tuple(self.provenance["names"])
 
     def draws(self, label: str, group: str = "posterior") -> FloatArray:
-        """All draws of one parameter or derived quantity (``name`` or ``name[level]``), flat, SI."""
+        """All draws of one parameter or derived quantity.
+
+        Parameters
+        ----------
+        label : ``name``, or ``name[level]`` where it differs by level or row
+        group : of :attr:`groups`, such as ``"prior"``
+
+        Returns
+        -------
+        ndarray
+            Shape ``(draws,)``, chain after chain, SI.
+
+        Raises
+        ------
+        KeyError
+            No such group or quantity.
+
+        Examples
+        --------
+        >>> fit.draws("young_modulus_layer").shape
+        (500,)
+        """
         name, _, level = label.partition("[")
         variable = self.groups[group][name]
         if level:
@@ -64,7 +95,25 @@ class FitResult:
     def quantiles(
         self, label: str, probabilities: ArrayLike = (0.05, 0.5, 0.95), group: str = "posterior"
     ) -> FloatArray:
-        """Quantiles of one parameter or derived quantity, SI, shape of ``probabilities``; of parameters with the weights."""
+        """Quantiles of one parameter or derived quantity; those of parameters with the weights, where draws have any.
+
+        Parameters
+        ----------
+        label : ``name`` or ``name[level]``
+        probabilities : between 0 and 1, any shape
+        group : of :attr:`groups`, such as ``"prior"``
+
+        Returns
+        -------
+        ndarray
+            Shape of ``probabilities``, SI.
+
+        Examples
+        --------
+        >>> low, median, high = fit.quantiles("young_modulus_layer")
+        >>> bool(low < median < high)
+        True
+        """
         weighted = self.groups.get("weighted_posterior") if group == "posterior" else None
         if weighted is None or label not in self.names:
             return np.asarray(np.quantile(self.draws(label, group), np.asarray(probabilities, dtype=float)))
@@ -75,11 +124,37 @@ class FitResult:
         return weighted_quantiles(values, np.exp(log_weights - log_weights.max()), probabilities)
 
     def theta(self, group: str = "posterior") -> FloatArray:
-        """Draws of all free parameters as vectors, shape ``(draws, D)``, SI."""
+        """Draws of all free parameters as vectors.
+
+        Parameters
+        ----------
+        group : of :attr:`groups`, such as ``"prior"``
+
+        Returns
+        -------
+        ndarray
+            Shape ``(draws, D)``, in the order of :attr:`names`, SI.
+
+        Examples
+        --------
+        >>> fit.theta().shape
+        (500, 5)
+        """
         return np.stack([self.draws(label, group) for label in self.names], axis=-1)
 
     def derived_labels(self) -> tuple[str, ...]:
-        """Labels of the derived quantities that the data leave uncertain, one for each row where they differ by row."""
+        """Derived quantities that the data leave uncertain.
+
+        Returns
+        -------
+        tuple of str
+            Their labels: ``name``, or ``name[row]`` for each row where they differ by row.
+
+        Examples
+        --------
+        >>> fit.derived_labels()[:2]
+        ('rms_slope', 'relative_contact_area[ID01]')
+        """
         labels: list[str] = []
         for name, variable in self.groups["posterior"].data_vars.items():
             if variable.attrs.get("kind") != "derived":
@@ -101,9 +176,14 @@ class FitResult:
         Returns
         -------
         pandas.DataFrame
-            Index: parameter label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), of ``ess_bulk``, ``ess_tail`` and
+            Index: label. Columns: ``unit``, ``median``, ``q05``, ``q95`` (SI), of ``ess_bulk``, ``ess_tail`` and
             ``r_hat`` those that the engine has, and the prior's ``prior_median``, ``prior_q05``, ``prior_q95``. An
             effective sample size is nan where the run was too short to know it.
+
+        Examples
+        --------
+        >>> fit.summary().loc["layer_thickness", "unit"]
+        'm'
         """
         import pandas
 
@@ -131,18 +211,59 @@ class FitResult:
         return pandas.DataFrame.from_dict(rows, orient="index")
 
     def unit(self, label: str) -> str:
-        """SI unit of a parameter or derived quantity."""
+        """SI unit of a parameter or derived quantity.
+
+        Parameters
+        ----------
+        label : ``name`` or ``name[level]``
+
+        Returns
+        -------
+        str
+            ``"1"`` for a number without dimension.
+
+        Examples
+        --------
+        >>> fit.unit("young_modulus_layer")
+        'Pa'
+        """
         return str(self.groups["posterior"][label.partition("[")[0]].attrs.get("units", "1"))
 
     def symbol(self, label: str) -> str:
-        """Symbol of a parameter or derived quantity, with its level: ``"E0 (wet)"``."""
+        """Symbol of a parameter or derived quantity, with its level.
+
+        Parameters
+        ----------
+        label : ``name`` or ``name[level]``
+
+        Returns
+        -------
+        str
+            Plain text, such as ``"E0 (wet)"``.
+
+        Examples
+        --------
+        >>> fit.symbol("young_modulus_layer")
+        'E0'
+        """
         name, _, level = label.partition("[")
         block = self.provenance.get("derived_symbols", {}).get(name, "")
         symbol = block or str(self.groups["posterior"][name].attrs.get("symbol", name))
         return f"{symbol} ({level.removesuffix(']')})" if level else symbol
 
     def to_arviz(self) -> Any:
-        """The result as ArviZ knows it: ``InferenceData`` for ArviZ below 1, ``xarray.DataTree`` from 1 on."""
+        """The result as ArviZ knows it.
+
+        Returns
+        -------
+        arviz.InferenceData or xarray.DataTree
+            The first for ArviZ below 1, the second from 1 on.
+
+        Examples
+        --------
+        >>> fit.to_arviz().posterior["young_modulus_layer"].shape
+        (1, 500)
+        """
         from skinbayes.fit.arviz_adapter import to_arviz
 
         return to_arviz(self.groups)
@@ -154,6 +275,11 @@ class FitResult:
         ----------
         style : ``"text"``, one line each, or ``"bibtex"``, one entry each
 
+        Returns
+        -------
+        list of str
+            One text for each work.
+
         Raises
         ------
         InputError
@@ -161,8 +287,6 @@ class FitResult:
 
         Examples
         --------
-        >>> import skinbayes
-        >>> fit = skinbayes.sample(skinbayes.load_problem("finger-water"), max_steps=100)
         >>> print(fit.cite("bibtex")[-1])
         @software{skinbayes,
           author = {{The skinbayes developers}},
@@ -175,5 +299,5 @@ class FitResult:
 
         if style not in ("text", "bibtex"):
             raise InputError(f"style: found {style!r}; expected 'text' or 'bibtex'")
-        known = [Reference.from_dict(entry) for entry in self.provenance["references"]]
+        known = [Reference(**entry) for entry in self.provenance["references"]]
         return [reference.text() if style == "text" else reference.bibtex() for reference in known]

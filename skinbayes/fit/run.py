@@ -7,9 +7,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skinbayes.errors import InputError
 from skinbayes.fit.assemble import assembled, require_data
 from skinbayes.fit.fit import Fit
 from skinbayes.fit.run_directory import RunDirectory
+from skinbayes.plugins import ENGINES as INSTALLED_ENGINES
+from skinbayes.plugins import installed
 
 if TYPE_CHECKING:
     from skinbayes.problem import Problem
@@ -74,10 +77,21 @@ def sample(
     -----
     RepairWarning
         Files of the run to be resumed were damaged or missing, and what was done about it.
+
+    Examples
+    --------
+    >>> import skinbayes as sb
+    >>> fit = sb.sample(sb.load_problem("finger-water"), max_steps=100, ensembles=2, walkers=16)
+    >>> fit.converged, fit.provenance["sampling"]["steps"]
+    (False, 100)
     """
-    from skinbayes.sampling.engines import find_engine, options_for
+    from skinbayes.sampling.engines import ENGINES, find_engine, options_for, register_engine
 
     require_data(problem)
+    if isinstance(engine, str) and engine not in ENGINES:
+        broken = installed(INSTALLED_ENGINES, register_engine)[1]
+        if engine in broken:
+            raise InputError(f"engine '{engine}' is {broken[engine]}")
     name, chosen = find_engine(engine)
     settings = options_for(
         name, chosen, **{"seed": seed, "ess": ess, "cores": cores, "expensive": problem.expensive, **options}

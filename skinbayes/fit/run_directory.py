@@ -17,6 +17,7 @@ from skinbayes.errors import (
     InputError,
     MachineError,
     cannot_write,
+    warn_of_repair,
 )
 from skinbayes.fit.manifest import (
     BASELINE_MODELS,
@@ -34,7 +35,6 @@ from skinbayes.fit.run_inputs import (
     own_baseline_models,
     read_run,
     remove_leftovers,
-    warn_of_repair,
     write_inputs,
 )
 from skinbayes.fit.run_lock import RunLock

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import PARTIAL, write_atomically
-from skinbayes.errors import InputError, RepairWarning
+from skinbayes.errors import InputError, warn_of_repair
 from skinbayes.files.locate import shipped_names
 from skinbayes.files.spectrum import spectrum_text
 from skinbayes.fit.manifest import BASELINE_MODELS, RUN, STEPS, Manifest, read_manifest, write_manifest
@@ -163,8 +162,3 @@ def _write_copy(copy: Path, content: bytes) -> None:
             "from the model and data that were given"
         )
     write_atomically(copy, content)
-
-
-def warn_of_repair(message: str) -> None:
-    """Say what was damaged in a run and what was done about it."""
-    warnings.warn(message, RepairWarning, stacklevel=3)

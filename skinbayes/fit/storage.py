@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes.errors import InputError, RepairWarning
+from skinbayes.errors import InputError, warn_of_repair
 from skinbayes.fit.fit import Fit
 from skinbayes.fit.manifest import (
     BASELINE_MODELS,
@@ -39,6 +38,11 @@ def load_fit(path: str | Path) -> Fit:
     ----------
     path : a netCDF file written by :meth:`Fit.save`, or a run directory written by ``skinbayes fit``
 
+    Returns
+    -------
+    Fit
+        With its problem, where model and data are at hand.
+
     Raises
     ------
     InputError
@@ -49,6 +53,18 @@ def load_fit(path: str | Path) -> Fit:
     RepairWarning
         The model cannot be built again, as after a change of skinbayes: the fit has no ``problem``. Or the table of the
         run, which is not read, was changed.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import numpy as np
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-water")
+    >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 100))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     again = load_fit(fit.save(pathlib.Path(folder) / "fit.nc"))
+    >>> np.array_equal(again.theta(), fit.theta())
+    True
     """
     path = Path(path)
     run = path if path.is_dir() else None
@@ -75,7 +91,7 @@ def load_fit(path: str | Path) -> Fit:
                 f"{file}: not the result of this run, or changed since (its sha256 is not the one in {RUN}){steps}"
             )
         if (table := run / SUMMARY).is_file() and file_digest(table) != manifest.files.get(SUMMARY):
-            _warn(
+            warn_of_repair(
                 f"{table}: damaged, or changed since the run was made; the numbers of the run are in {file}"
             )
     provenance = dict(provenance)
@@ -113,10 +129,6 @@ def _undamaged(run: Path) -> Manifest:
     return manifest
 
 
-def _warn(message: str) -> None:
-    warnings.warn(message, RepairWarning, stacklevel=3)
-
-
 def _rebuild(
     file: Path, run: Path | None, manifest: Manifest | None, provenance: Mapping[str, Any]
 ) -> Problem | None:
@@ -137,7 +149,7 @@ def _rebuild(
     except (InputError, OSError, ValueError, KeyError) as error:
         reason = str(error)
     copies = "" if run is None else " from the undamaged copies of model and data"
-    _warn(
+    warn_of_repair(
         f"{run or file}: the model cannot be built again{copies} ({reason}). "
         "The numbers are read as they were computed; what needs the model is left out"
     )

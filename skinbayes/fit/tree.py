@@ -55,11 +55,7 @@ def posterior_groups(
         of the draws in which a row is at the edge of the theory); with more than 400 rows ``derived_by_row``. What differs by row
         is kept of evenly spaced draws, as many as `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
     """
-    effects = (
-        None
-        if problem.groups is None
-        else _in_parts(problem, lambda part: problem.draw_effects(part, rng), draws)
-    )
+    effects = None if problem.groups is None else _at(draws, lambda theta: problem.draw_effects(theta, rng))
     step = _thinning(problem, draws)
     kept, kept_effects = draws[:, ::step], None if effects is None else effects[:, ::step]
     pointwise = partial(problem.log_likelihood, pointwise=True)
@@ -67,14 +63,14 @@ def posterior_groups(
         "posterior": _parameters(problem, draws, effects),
         "sample_stats": _dataset({"lp": (("chain", "draw"), log_density)}, draws),
         "posterior_predictive": _rows(problem, _simulated(problem, kept, rng, kept_effects), kept, step),
-        "log_likelihood": _rows(problem, _in_parts(problem, pointwise, kept), kept, step),
+        "log_likelihood": _rows(problem, _at(kept, pointwise), kept, step),
     }
     if by_row := _derived_by_row(problem, kept):
         groups["derived_by_row"] = _dataset(by_row, kept, {"row": problem.conditions.row_labels()}, step)
     left_out = {
         column: (
             ("chain", "draw", f"{column}_level"),
-            _in_parts(problem, partial(problem.log_likelihood_left_out, column=column), kept),
+            _at(kept, partial(problem.log_likelihood_left_out, column=column)),
         )
         for column in columns_to_leave_out(problem)
     }
@@ -230,57 +226,37 @@ def _chunk(problem: Problem) -> int:
 def _derived(problem: Problem, draws: FloatArray) -> dict[str, FloatArray]:
     """Derived quantities at all draws, ``(chain, draw, ·)``; with many rows only what the rows of a level share."""
     if problem.conditions.n_rows <= MOST_ROWS_EACH:
-        return _in_chunks(problem.derived, draws)
-    few = one_row_of_each_level(problem)
-    shared = _shared_by_rows(problem, draws)
-    found = {name: values for name, values in _in_chunks(few.derived, draws).items() if name in shared}
-    return {name: values[..., :1] for name, values in found.items()}
+        return _derived_at(problem, draws)
+    some = draws.reshape(-1, draws.shape[-1])[:2]
+    shared = {name for name, values in problem.derived(some).items() if values.shape[-1] == 1}
+    found = _derived_at(one_row_of_each_level(problem), draws)
+    return {name: values[..., :1] for name, values in found.items() if name in shared}
 
 
 def _derived_by_row(problem: Problem, draws: FloatArray) -> dict[str, Any]:
     """What is derived for each row and stands apart from the parameters because there are many rows."""
-    if problem.conditions.n_rows <= MOST_ROWS_EACH:
-        return {}
-    flat = draws.reshape(-1, draws.shape[-1])
-    found = {
-        name: values
-        for name, values in problem.derived(flat).items()
-        if values.shape[-1] == problem.conditions.n_rows
-    }
+    count = problem.conditions.n_rows
+    found = _derived_at(problem, draws) if count > MOST_ROWS_EACH else {}
     return {
-        name: (("chain", "draw", "row"), values.reshape(*draws.shape[:2], -1))
+        name: (("chain", "draw", "row"), values)
         for name, values in found.items()
+        if values.shape[-1] == count
     }
 
 
-def _shared_by_rows(problem: Problem, draws: FloatArray) -> set[str]:
-    """Derived quantities that are the same for all rows of those they are defined for."""
-    some = draws.reshape(-1, draws.shape[-1])[:2]
-    return {name for name, values in problem.derived(some).items() if values.shape[-1] == 1}
+def _at(draws: FloatArray, function: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """A function of parameter vectors ``(B, D)`` at all draws, shape ``(chain, draw, ·)``."""
+    return function(draws.reshape(-1, draws.shape[-1])).reshape(*draws.shape[:2], -1)
 
 
-def _in_parts(
-    problem: Problem, function: Callable[[FloatArray], FloatArray], draws: FloatArray
-) -> FloatArray:
-    """A function of parameter vectors at all draws, some at a time, shape ``(chain, draw, ·)``."""
-    flat, count = draws.reshape(-1, draws.shape[-1]), _chunk(problem)
-    parts = [function(flat[i : i + count]) for i in range(0, len(flat), count)]
-    return np.concatenate(parts).reshape(*draws.shape[:2], -1)
-
-
-def _in_chunks(function: Any, draws: FloatArray) -> dict[str, FloatArray]:
+def _derived_at(problem: Problem, draws: FloatArray) -> dict[str, FloatArray]:
+    """Derived quantities at all draws, ``(chain, draw, ·)``."""
     flat = draws.reshape(-1, draws.shape[-1])
-    parts = [function(flat[i : i + CHUNK]) for i in range(0, len(flat), CHUNK)]
-    sizes = [min(CHUNK, len(flat) - i) for i in range(0, len(flat), CHUNK)]
-    joined = {}
-    for name in parts[0]:
-        # what does not depend on free parameters comes as one row for the whole batch
-        rows = [
-            np.broadcast_to(part[name], (n, part[name].shape[-1]))
-            for part, n in zip(parts, sizes, strict=True)
-        ]
-        joined[name] = np.concatenate(rows).reshape(*draws.shape[:2], -1)
-    return joined
+    # what does not depend on free parameters comes as one row for the whole batch
+    return {
+        name: np.array(np.broadcast_to(values, (len(flat), values.shape[-1]))).reshape(*draws.shape[:2], -1)
+        for name, values in problem.derived(flat).items()
+    }
 
 
 def _rows(problem: Problem, values: FloatArray, draws: FloatArray, step: int) -> xarray.Dataset:

@@ -82,6 +82,16 @@ def register_forward_model(model: ForwardModel) -> ForwardModel:
     ------
     InputError
         the name of a model of skinbayes, or inputs and observables that are no known quantities
+
+    Examples
+    --------
+    >>> def evaluate(inputs, tables):
+    ...     return {"friction_coefficient": inputs["frictional_shear_stress"] / inputs["nominal_pressure"]}
+    >>> needed = ("frictional_shear_stress", "nominal_pressure")
+    >>> model = ForwardModel("full-contact", "all touches", ("friction_coefficient",), needed, evaluate, uses_surface=False)
+    >>> register_forward_model(model) is forward_model("full-contact")
+    True
+    >>> del _REGISTERED["full-contact"]
     """
     if model.name in set(forward_models()) - set(_REGISTERED):
         raise InputError(f"there is a forward model '{model.name}' already; give yours another name")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.lubrication import FlowCurve
@@ -44,6 +44,13 @@ class Tables:
         if self.flow_curves is None:
             return self
         return Tables(self.spectrum, (self.flow_curves[row],))
+
+    def digest(self) -> str | None:
+        """What tells one spectrum from another in the key of a table that is kept; None without a spectrum."""
+        if self.spectrum is None:
+            return None
+        parts = (self.spectrum.wavevector, self.spectrum.node_power, self.spectrum.scale)
+        return hashlib.sha256(np.concatenate([np.ravel(x) for x in parts]).tobytes()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -111,6 +118,21 @@ class ForwardModel:
     options : name of a choice to its values, the first of which is taken if none is given: ``{"closure": ("gaussian", "sharp")}``
     variant : the model for given values of all options, called by keyword; needed where there are options
     chosen : the values that this model was made for
+
+    Examples
+    --------
+    Examples of methods go on from this one.
+
+    >>> def evaluate(inputs, tables):
+    ...     return {"friction_coefficient": inputs["frictional_shear_stress"] / inputs["nominal_pressure"]}
+    >>> needed = ("frictional_shear_stress", (("nominal_pressure",),))
+    >>> model = ForwardModel(
+    ...     "full-contact", "all of the area touches", ("friction_coefficient",), needed, evaluate,
+    ...     optional={"temperature": 293.0}, uses_surface=False,
+    ... )
+    >>> given = {"frictional_shear_stress": np.array([[2e3]]), "nominal_pressure": np.array([[1e3, 4e3]])}
+    >>> model.evaluate(given, Tables())["friction_coefficient"].tolist()
+    [[2.0, 0.5]]
     """
 
     name: str
@@ -129,7 +151,7 @@ class ForwardModel:
     uses_surface: bool = True
     validate: Callable[[Inputs, Tables], None] | None = None
     explain: Callable[[Inputs, Tables], list[str]] | None = None
-    flags: Callable[[Inputs, Tables], dict[str, NDArray[np.bool_]]] | None = None
+    flags: Callable[[Inputs, Tables], dict[str, BoolArray]] | None = None
     flag_meanings: Mapping[str, str] = field(default_factory=dict)
     prepare: Callable[[ForwardModel, Ranges, Tables, Progress | None, int], ForwardModel] | None = None
     accuracy: str = ""
@@ -144,7 +166,26 @@ class ForwardModel:
     def with_options(self, given: Mapping[str, str], where: str = "options") -> ForwardModel:
         """This model with some of its options set; the others have their first value.
 
-        Raises :class:`InputError` for an option or a value that it does not have; ``where`` is its place, for the message.
+        Parameters
+        ----------
+        given : option to value
+        where : place of the options, for messages
+
+        Returns
+        -------
+        ForwardModel
+            The model for these values.
+
+        Raises
+        ------
+        InputError
+            An option or a value that it does not have.
+
+        Examples
+        --------
+        >>> from skinbayes.forward import forward_model
+        >>> forward_model("drying").with_options({"closure": "sharp"}).chosen
+        {'closure': 'sharp'}
         """
         for name, value in given.items():
             if name not in self.options:
@@ -162,14 +203,40 @@ class ForwardModel:
         return replace(self.variant(**chosen), options=self.options, variant=self.variant, chosen=chosen)
 
     def required_names(self) -> tuple[str, ...]:
-        """All names that occur in ``required``, alternatives included."""
+        """All names that occur in ``required``, alternatives included.
+
+        Returns
+        -------
+        tuple of str
+            Each once.
+
+        Examples
+        --------
+        >>> model.required_names()
+        ('frictional_shear_stress', 'nominal_pressure')
+        """
         flat: list[str] = []
         for entry in self.required:
             flat += [entry] if isinstance(entry, str) else [name for names in entry for name in names]
         return tuple(dict.fromkeys(flat))
 
     def defaults(self, given: Collection[str]) -> dict[str, float]:
-        """Values of the optional inputs that are not given, SI, but for those without a meaning beside what is given."""
+        """Values of the optional inputs that are not given, but for those without a meaning beside what is given.
+
+        Parameters
+        ----------
+        given : names of the inputs that are given
+
+        Returns
+        -------
+        dict
+            Name to value, SI.
+
+        Examples
+        --------
+        >>> model.defaults(["nominal_pressure"])
+        {'temperature': 293.0}
+        """
         return {
             name: float(value)
             for name, value in self.optional.items()
@@ -177,7 +244,18 @@ class ForwardModel:
         }
 
     def input_names(self) -> tuple[str, ...]:
-        """All inputs the model takes, sorted; roughness inputs included if it has a surface."""
+        """All inputs the model takes; roughness inputs included if it has a surface.
+
+        Returns
+        -------
+        tuple of str
+            Sorted.
+
+        Examples
+        --------
+        >>> model.input_names()
+        ('frictional_shear_stress', 'nominal_pressure', 'temperature')
+        """
         return self._input_names
 
     @cached_property
@@ -187,5 +265,16 @@ class ForwardModel:
         return tuple(sorted({*self.required_names(), *self.optional, *self.accepted, *roughness}))
 
     def alternatives(self) -> tuple[tuple[tuple[str, ...], ...], ...]:
-        """All sets of alternatives, required or not."""
+        """All sets of alternatives, required or not.
+
+        Returns
+        -------
+        tuple
+            For each set its alternatives, a tuple of names each.
+
+        Examples
+        --------
+        >>> model.alternatives()
+        ((('nominal_pressure',),),)
+        """
         return (*(entry for entry in self.required if not isinstance(entry, str)), *self.exclusive)

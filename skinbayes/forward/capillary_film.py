@@ -15,13 +15,11 @@ from skinbayes.forward.contact_inputs import (
     SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
     nominal_pressure_of,
-    pressure_and_slope,
     skin_of,
     spectrum_of,
-    validate_contact,
 )
 from skinbayes.forward.deduplicated_rows import along_rows
-from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
+from skinbayes.forward.small_contact import ROUGH_CONTACT, explain_small_contact
 from skinbayes.wetting import capillary_state
 
 Closure = Literal["gaussian", "sharp"]
@@ -56,12 +54,9 @@ def _bridged(
         nominal_pressure_of(inputs),
         spectrum=spectrum_of(inputs, tables),
         skin=skin_of(inputs),
-        surface_tension=inputs["surface_tension"],
-        contact_angle_skin=inputs["contact_angle_skin"],
-        contact_angle_counterface=inputs["contact_angle_counterface"],
-        area_correction=inputs["area_correction"],
         closure=closure,
         refine=refine,
+        **{name: inputs[name] for name in (*WATER_INPUTS, "area_correction")},
     )
     return {name: np.asarray(getattr(state, name)) for name in OBSERVABLES}
 
@@ -128,13 +123,8 @@ def capillary_film_model(closure: Closure = "gaussian") -> ForwardModel:
         goes_with=GOES_WITH,
         optional=BRIDGED_SKIN_DEFAULTS,
         evaluate=partial(_evaluate, closure=closure),
-        validate=validate_contact,
         explain=_explain,
-        flags=small_contact_flags,
-        flag_meanings=SMALL_CONTACT,
-        derived=pressure_and_slope,
-        derived_names=("nominal_pressure", "rms_slope"),
-        blocks=("rms_slope",),
+        **ROUGH_CONTACT,
         profiles=film_profiles(closure),
     )
 

@@ -12,17 +12,11 @@ def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     return {"friction_coefficient": np.asarray(inputs["typical_friction_coefficient"], dtype=float)}
 
 
-def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    return {}
-
-
 MODEL = ForwardModel(
     name="constant",
     summary="one friction coefficient for all rows; with effects of groups, the null model",
     observables=("friction_coefficient",),
     required=("typical_friction_coefficient",),
-    optional={},
     evaluate=_evaluate,
-    derived=_derived,
     uses_surface=False,
 )

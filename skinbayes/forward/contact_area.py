@@ -10,11 +10,11 @@ from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profi
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
     PRESSURE_ALTERNATIVES,
+    PRESSURE_AND_SLOPE,
     SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
     SOLID_INPUTS,
     contact_area_of,
-    pressure_and_slope,
     skin_of,
     spectrum_of,
     validate_contact,
@@ -103,8 +103,6 @@ MODEL = ForwardModel(
     exclusive=((("wavevector",), ("magnification",)),),
     evaluate=_evaluate,
     validate=validate_contact,
-    derived=pressure_and_slope,
-    derived_names=("nominal_pressure", "rms_slope"),
-    blocks=("rms_slope",),
+    **PRESSURE_AND_SLOPE,
     profiles=(CONTACT_AREA_PROFILE,),
 )

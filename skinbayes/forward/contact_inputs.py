@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from skinbayes.arrays import FloatArray
@@ -105,6 +107,14 @@ def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         "nominal_pressure": nominal_pressure_of(inputs),
         "rms_slope": np.asarray(rms_slope(spectrum_of(inputs, tables))),
     }
+
+
+PRESSURE_AND_SLOPE: dict[str, Any] = {
+    "derived": pressure_and_slope,
+    "derived_names": ("nominal_pressure", "rms_slope"),
+    "blocks": ("rms_slope",),
+}
+"""Fields of a forward model between whose inputs and observables stand these two."""
 
 
 def check_one_solid(inputs: Inputs) -> None:

@@ -9,20 +9,18 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
-from skinbayes.forward.contact_inputs import nominal_pressure_of, pressure_and_slope, validate_contact
 from skinbayes.forward.deduplicated_rows import once_for_distinct
 from skinbayes.forward.drying_inputs import (
     DRYING_ACCEPTED,
     DRYING_DEFAULTS,
     DRYING_GOES_WITH,
     DRYING_INPUTS,
+    drying_arguments,
     evaporation_rate_of,
     explain_evaporation,
-    film_contact_of,
-    initial_film_of,
 )
 from skinbayes.forward.drying_table import prepared_drying
-from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
+from skinbayes.forward.small_contact import ROUGH_CONTACT, explain_small_contact
 from skinbayes.wetting import BridgeTable, DryingFeatures, drying_features
 
 OBSERVABLES = DryingFeatures._fields
@@ -31,15 +29,7 @@ OBSERVABLES = DryingFeatures._fields
 def _features(
     inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None
 ) -> dict[str, FloatArray]:
-    features = drying_features(
-        inputs["wetting_time"],
-        initial_film_of(inputs),
-        evaporation_rate=evaporation_rate_of(inputs),
-        contact=film_contact_of(inputs, tables, closure, table),
-        frictional_shear_stress=inputs["frictional_shear_stress"],
-        nominal_pressure=nominal_pressure_of(inputs),
-        film_spread=inputs["film_spread"],
-    )
+    features = drying_features(inputs["wetting_time"], **drying_arguments(inputs, tables, closure, table))
     return {name: np.asarray(getattr(features, name)) for name in OBSERVABLES}
 
 
@@ -98,13 +88,8 @@ def features_model(closure: Closure = "gaussian") -> ForwardModel:
         expensive=True,
         prepare=prepared_drying if closure == "gaussian" else None,
         evaluate=partial(_evaluate, closure=closure),
-        validate=validate_contact,
         explain=partial(_explain, closure=closure),
-        flags=small_contact_flags,
-        flag_meanings=SMALL_CONTACT,
-        derived=pressure_and_slope,
-        derived_names=("nominal_pressure", "rms_slope"),
-        blocks=("rms_slope",),
+        **ROUGH_CONTACT,
     )
 
 

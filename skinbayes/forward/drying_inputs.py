@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from skinbayes.arrays import FloatArray
@@ -20,7 +22,6 @@ from skinbayes.wetting import (
     FILM_FLOOR,
     LATENT_HEAT_OF_PAPER,
     BridgeTable,
-    FilmContact,
     evaporation_rate,
     film_contact,
     film_of_droplet,
@@ -68,6 +69,11 @@ DRYING_DEFAULTS = {
 DRYING_ACCEPTED = ("hardening_film",)
 """Without it the layer keeps its wet modulus down to the floor."""
 
+_FILM_CONTACT = (
+    *WATER_INPUTS, "yield_stress", "area_correction", "film_floor", "young_modulus_layer_dry", "hardening_film",
+    "hardening_sharpness",
+)  # fmt: skip
+
 
 def initial_film_of(inputs: Inputs) -> FloatArray:
     """Return the film right after wetting [m]: as given, or that of a droplet spread over the track."""
@@ -101,23 +107,24 @@ def explain_evaporation(inputs: Inputs) -> list[str]:
     ]
 
 
-def film_contact_of(
+def drying_arguments(
     inputs: Inputs, tables: Tables, closure: Closure, table: BridgeTable | None = None
-) -> FilmContact:
-    """Return the contact area against the film for inputs that broadcast to the batch."""
-    return film_contact(
-        nominal_pressure_of(inputs),
+) -> dict[str, Any]:
+    """Return what `drying_curve` and `drying_features` take beside times, for inputs that broadcast to the batch."""
+    pressure = nominal_pressure_of(inputs)
+    contact = film_contact(
+        pressure,
         spectrum_of(inputs, tables),
         skin=skin_of(inputs),
-        surface_tension=inputs["surface_tension"],
-        contact_angle_skin=inputs["contact_angle_skin"],
-        contact_angle_counterface=inputs["contact_angle_counterface"],
-        young_modulus_layer_dry=inputs.get("young_modulus_layer_dry"),
-        yield_stress=inputs["yield_stress"],
-        area_correction=inputs["area_correction"],
         closure=closure,
-        film_floor=inputs["film_floor"],
-        hardening_film=inputs.get("hardening_film"),
-        hardening_sharpness=inputs.get("hardening_sharpness", 2.0),
         table=table,
+        **{name: inputs[name] for name in _FILM_CONTACT if name in inputs},
     )
+    return {
+        "initial_film": initial_film_of(inputs),
+        "evaporation_rate": evaporation_rate_of(inputs),
+        "contact": contact,
+        "frictional_shear_stress": inputs["frictional_shear_stress"],
+        "nominal_pressure": pressure,
+        "film_spread": inputs["film_spread"],
+    }

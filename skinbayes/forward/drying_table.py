@@ -9,13 +9,13 @@ from typing import cast
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.emulation import Box, Progress
+from skinbayes.emulation import Box, Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Ranges, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS
 from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.roughness import TabulatedSpectrum, rms_height
-from skinbayes.wetting import BridgeTable, bridge_table, skin_groups
+from skinbayes.wetting import VERSION_OF_BRIDGES, BridgeTable, bridge_table, skin_groups
 
 
 def table_over(
@@ -55,7 +55,13 @@ def table_over(
     )
     modulus = inputs["young_modulus" if "young_modulus" in inputs else "young_modulus_bulk"]
     depth = float(np.max(load / modulus)) / known["film_floor"][0]
-    return bridge_table(Box.around(groups), depth=depth, spectrum=tables.spectrum, progress=progress)
+    box = Box.around(groups)
+    return kept_table(
+        "bridges",
+        {"version": VERSION_OF_BRIDGES, "ends": box.ends, "depth": depth, "spectrum": tables.digest()},
+        BridgeTable,
+        lambda _: bridge_table(box, depth=depth, spectrum=tables.spectrum, progress=progress),
+    )
 
 
 def prepared_drying(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,21 +16,18 @@ from skinbayes.emulation import (
     Interpolant,
     Places,
     Progress,
-    Stored,
     Tasks,
     Unfinished,
-    cached,
     counts_along,
-    from_arrays,
+    kept_table,
     refined,
-    to_arrays,
 )  # fmt: skip
 from skinbayes.errors import InputError
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 
 _TRIALS = 100
 _WEIGHTS = 1 << 21  # of nodes, held at a time
-_VERSION = 1  # of what is kept on disk
+_VERSION = 2  # of what is kept on disk
 
 
 def emulated(
@@ -150,7 +146,7 @@ def _prepare(
     box = Box.around(_scaled({name: np.array(ends) for name, ends in finite.items()}, scales))
     shared: Any = {"model": model, "tables": tables, "scales": scales, "held": held}
 
-    def build(unfinished: Unfinished) -> Stored:
+    def build(unfinished: Unfinished) -> _Found | None:
         with Tasks(cores, progress=progress, kept=unfinished) as tasks:
             trial = box.random(_TRIALS, seed=0)
             exact = tasks.at("trial", partial(_solve, **shared), trial, 1)
@@ -158,37 +154,21 @@ def _prepare(
             exact = np.where(positive, np.log(np.where(positive, exact, 1.0)), exact)
             solve, judge = partial(_solve, **shared, positive=positive), partial(_error, positive=positive)
             counts = counts_along(box, solve, judge, tolerance / 2, tasks, 1)
-            found = (
-                None
-                if counts is None
-                else refined(
-                    box,
-                    counts,
-                    solve,
-                    judge,
-                    trial=trial,
-                    exact=exact,
-                    worst=tolerance,
-                    most=most,
-                    tasks=tasks,
-                    block=1,
-                )
-            )
-        if found is None:
-            raise _NotSmoothError
-        arrays, metadata = to_arrays(found)
-        return arrays, {**metadata, "positive": positive.tolist()}
+            if counts is None:
+                return None
+            aims: Any = {"trial": trial, "exact": exact, "worst": tolerance, "most": most}
+            table = refined(box, counts, solve, judge, **aims, tasks=tasks, block=1)
+        return None if table is None else _Found(table, tuple(positive.tolist()))
 
     key = {"version": [_VERSION, version], "model": model.name, "chosen": dict(model.chosen), "ends": known,
-           "observables": model.observables, "tolerance": tolerance, "most": most, "spectrum": _digest(tables)}  # fmt: skip
-    try:
-        stored = build(Unfinished(None, "")) if version is None else cached("emulated", key, build)
-    except _NotSmoothError:
+           "observables": model.observables, "tolerance": tolerance, "most": most, "spectrum": tables.digest()}  # fmt: skip
+    kept = kept_table("emulated", None if version is None else key, _Found, build)
+    if kept is None:
         return _directly(
             model, f"it does not come to {tolerance:g} on {most} nodes, or gives no number at some"
         )
-    found = from_arrays(Interpolant, *stored)
-    fast = Emulated(model, found, scales, held, stored[1]["positive"])
+    found = kept.table
+    fast = Emulated(model, found, scales, held, kept.positive)
     return replace(
         model,
         evaluate=fast.evaluate,
@@ -199,8 +179,10 @@ def _prepare(
     )
 
 
-class _NotSmoothError(Exception):
-    """More nodes than allowed would be needed."""
+@dataclass(frozen=True, eq=False)
+class _Found:
+    table: Interpolant
+    positive: tuple[bool, ...]
 
 
 def _directly(model: ForwardModel, why: str) -> ForwardModel:
@@ -238,10 +220,3 @@ def _error(found: FloatArray, exact: FloatArray, places: Places, positive: Array
     difference = np.where(positive, np.expm1(np.where(positive, found - exact, 0.0)), found - exact)
     unit = np.where(positive, 1.0, np.maximum(np.abs(exact).max(axis=0), np.finfo(float).tiny))
     return float(np.nan_to_num(np.abs(difference) / unit, nan=np.inf).max())
-
-
-def _digest(tables: Tables) -> str | None:
-    if (spectrum := tables.spectrum) is None:
-        return None
-    parts = np.concatenate([np.ravel(x) for x in (spectrum.wavevector, spectrum.node_power, spectrum.scale)])
-    return hashlib.sha256(parts.tobytes()).hexdigest()

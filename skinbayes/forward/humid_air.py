@@ -10,19 +10,19 @@ infinite yield stress, the default, the area is the elastic one of Fig. 16.
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import total_contact_area, twice_stress_variance
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
+    PRESSURE_AND_SLOPE,
     SOLID_INPUTS,
     nominal_pressure_of,
-    pressure_and_slope,
     skin_of,
     spectrum_of,
 )
@@ -74,17 +74,18 @@ def _with_pressing(inputs: Inputs) -> dict[str, FloatArray]:
 
 
 def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closure) -> dict[str, FloatArray]:
+    water: Any = {
+        name: inputs[name] for name in ("contact_angle_skin", "contact_angle_counterface", "area_correction")
+    }
     state = capillary_state_in_humid_air(
         humidity,
         inputs["temperature"],
         nominal_pressure=inputs["nominal_pressure"],
         spectrum=spectrum_of(inputs, tables),
         skin=skin_of(inputs),
-        contact_angle_skin=inputs["contact_angle_skin"],
-        contact_angle_counterface=inputs["contact_angle_counterface"],
-        area_correction=inputs["area_correction"],
         closure=closure,
         count=False,
+        **water,
     )
     return {"capillary_pressure": np.asarray(state.capillary_pressure)}
 
@@ -126,7 +127,7 @@ def _evaluate(
 
 def _flags(
     inputs: Inputs, tables: Tables, closure: Closure, table: TabulatedBridges | None = None
-) -> dict[str, NDArray[np.bool_]]:
+) -> dict[str, BoolArray]:
     known = _with_pressing(inputs)
     capillary_pressure, gap = _capillary_pressure(known, tables, closure, table), kelvin_gap_of(known)
     below = (is_below_molecule(gap) > 0) & bridges_form(known)
@@ -211,9 +212,7 @@ def humid_air_model(closure: Closure = "gaussian") -> ForwardModel:
         explain=partial(_explain, closure=closure),
         flags=partial(_flags, closure=closure),
         flag_meanings=FLAGS,
-        derived=pressure_and_slope,
-        derived_names=("nominal_pressure", "rms_slope"),
-        blocks=("rms_slope",),
+        **PRESSURE_AND_SLOPE,
         profiles=_profiles(closure),
     )
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import (
@@ -100,7 +99,7 @@ def kelvin_radius_of(inputs: Inputs) -> FloatArray:
     return np.asarray(kelvin_radius(inputs["relative_humidity"], inputs["temperature"]))
 
 
-def bridges_form(inputs: Inputs) -> NDArray[np.bool_]:
+def bridges_form(inputs: Inputs) -> BoolArray:
     """Tell where water on skin and counterface makes bridges, cos θ1 + cos θ2 > 0."""
     return np.asarray(
         kelvin_gap(

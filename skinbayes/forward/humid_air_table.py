@@ -9,8 +9,8 @@ from typing import cast
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
-from skinbayes.emulation import Box, Progress
+from skinbayes.arrays import BoolArray, FloatArray
+from skinbayes.emulation import Box, Progress, kept_table
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, nominal_pressure_of, skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
@@ -21,7 +21,7 @@ from skinbayes.forward.humid_air_inputs import (
     kelvin_gap_and_strength,
 )
 from skinbayes.roughness import rms_height
-from skinbayes.wetting import HumidTable, humid_groups, humid_table
+from skinbayes.wetting import VERSION_OF_BRIDGES, HumidTable, humid_groups, humid_table
 
 _SHAPE = (*ROUGHNESS_INPUTS[1:], *GOES_WITH, "area_correction")
 """What the table does not interpolate in."""
@@ -112,12 +112,17 @@ def bridges_over(
     ends = dict(Box.around(groups).ends)
     ends["load"] = (ends["load"][0], float(np.max(groups["load"] + np.log1p(strength))))
     one = {name: value[0] for name, value in inputs.items()}
-    table = humid_table(
-        Box(ends),
-        spectrum=spectrum_of(one, tables),
-        skin=skin_of(one),
-        area_correction=one["area_correction"],
-        progress=progress,
+    table = kept_table(
+        "humid-air",
+        {"version": VERSION_OF_BRIDGES, "ends": ends, "shape": shape, "spectrum": tables.digest()},
+        HumidTable,
+        lambda _: humid_table(
+            Box(ends),
+            spectrum=spectrum_of(one, tables),
+            skin=skin_of(one),
+            area_correction=one["area_correction"],
+            progress=progress,
+        ),
     )
     return None if table is None else TabulatedBridges(table, shape)
 
@@ -132,7 +137,7 @@ def prepared_humid_air(
     return replace(
         model,
         evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),
-        flags=partial(cast("partial[dict[str, np.typing.NDArray[np.bool_]]]", model.flags), table=table),
+        flags=partial(cast("partial[dict[str, BoolArray]]", model.flags), table=table),
         prepare=None,
         accuracy="pressure of bridged skin interpolated to 4e-4, or 2e-3 where bridges pull hard (root mean square)",
     )

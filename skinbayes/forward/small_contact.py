@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
-from skinbayes.arrays import FloatArray
+import numpy as np
+
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import sphere_contact
 from skinbayes.forward.base import Inputs, Tables
-from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
+from skinbayes.forward.contact_inputs import (
+    PRESSURE_AND_SLOPE,
+    nominal_pressure_of,
+    skin_of,
+    spectrum_of,
+    validate_contact,
+)
 from skinbayes.roughness import SelfAffineSpectrum
 
 ENOUGH_WAVELENGTHS = 5.0
@@ -38,7 +45,7 @@ def contact_width(inputs: Inputs) -> FloatArray:
     )
 
 
-def small_contact_flags(inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+def small_contact_flags(inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
     """Tell where the contact is too small; never where its size or the roll-off is not known."""
     width, spectrum = contact_width(inputs), spectrum_of(inputs, tables)
     if not isinstance(spectrum, SelfAffineSpectrum):
@@ -52,3 +59,12 @@ def explain_small_contact(inputs: Inputs, tables: Tables) -> list[str]:
     marked = small_contact_flags(inputs, tables)["small_contact"]
     count = int(np.count_nonzero(marked))
     return [f"{count} of {marked.size} rows: {SMALL_CONTACT['small_contact']}."] if count else []
+
+
+ROUGH_CONTACT: dict[str, Any] = {
+    "validate": validate_contact,
+    "flags": small_contact_flags,
+    "flag_meanings": SMALL_CONTACT,
+    **PRESSURE_AND_SLOPE,
+}
+"""What all models of the contact of skin in water have in common."""

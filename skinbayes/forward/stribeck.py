@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
@@ -17,6 +16,7 @@ from skinbayes.forward.contact_inputs import (
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     FLAGS,
+    SPEED_ALTERNATIVES,
     curve_of,
     solve,
     speed_viscosity_product_of,
@@ -25,16 +25,13 @@ from skinbayes.forward.stribeck_table import prepare
 from skinbayes.lubrication import LARGEST_STRAIN, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
 from skinbayes.roughness import rms_slope
 
-SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
-"""How the abscissa can be given; the first complete alternative is used."""
-
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     found = solve(inputs, tables, MODEL.input_names())
     return {name: found[name] for name in FIELDS}
 
 
-def _flags(inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+def _flags(inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
     found = solve(inputs, tables, MODEL.input_names())
     return {name: found[name] > 0 for name in FLAGS}
 

@@ -17,6 +17,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.stribeck_direct import SPEED_ALTERNATIVES, speed_viscosity_product_of
 
 REFERENCE_LOAD = 1.0
 """Load at which the transition is at ``transition_speed_viscosity_product``, N."""
@@ -30,11 +31,8 @@ LAW = (
 )
 
 
-def _abscissa(inputs: Inputs, tables: Tables | None = None) -> FloatArray:
-    """Return ηv [N/m]: as given, or viscosity times sliding speed."""
-    if "speed_viscosity_product" in inputs:
-        return np.asarray(inputs["speed_viscosity_product"], dtype=float)
-    return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
+def _abscissa(inputs: Inputs, tables: Tables) -> FloatArray:
+    return speed_viscosity_product_of(inputs)
 
 
 def _friction(inputs: Inputs, product: FloatArray) -> FloatArray:
@@ -51,15 +49,11 @@ def _friction(inputs: Inputs, product: FloatArray) -> FloatArray:
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    return {"friction_coefficient": _friction(inputs, _abscissa(inputs))}
-
-
-def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    return {}
+    return {"friction_coefficient": _friction(inputs, speed_viscosity_product_of(inputs))}
 
 
 def _validate(inputs: Inputs, tables: Tables) -> None:
-    if not (_abscissa(inputs) >= 0).all():
+    if not (speed_viscosity_product_of(inputs) >= 0).all():
         raise InputError("speed times viscosity is negative somewhere; expected values >= 0 N/m")
 
 
@@ -76,10 +70,9 @@ MODEL = ForwardModel(
     name="stribeck-descriptive",
     summary="a Stribeck curve that only describes: plateau, transition, rising branch; the baseline model of theories",
     observables=("friction_coefficient",),
-    required=(*LAW, "normal_force", (("speed_viscosity_product",), ("viscosity", "sliding_speed"))),
+    required=(*LAW, "normal_force", SPEED_ALTERNATIVES),
     optional={"transition_load_exponent": 0.0},
     evaluate=_evaluate,
-    derived=_derived,
     abscissa=_abscissa,
     validate=_validate,
     uses_surface=False,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import cylinder_of_sphere
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
@@ -48,6 +48,9 @@ FLAGS = {
 }
 """Flags and what they say."""
 
+SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
+"""How the abscissa can be given; the first complete alternative is used."""
+
 _CURVE = "flow_curve"  # number of the flow curve of a row, among the inputs
 
 
@@ -60,18 +63,24 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
 
 def curve_of(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCurve:
     """The curve of Newtonian liquids for inputs that broadcast to ``(B,)`` at products ηv of shape ``(K,)``."""
-    return stribeck_curve(
-        products,
-        sphere_radius=inputs["sphere_radius"],
-        normal_force=inputs["normal_force"],
-        skin=skin_of(inputs),
-        spectrum=spectrum_of(inputs, tables),
-        frictional_shear_stress=inputs["frictional_shear_stress"],
-        area_correction=inputs["area_correction"],
-        velocity_shift_factor=inputs["velocity_shift_factor"],
-        thickest_film=limit_of(inputs, "inlet_film_limit"),
-        largest_strain=limit_of(inputs, "strain_limit"),
+    return stribeck_curve(products, **_ball(inputs, tables))
+
+
+def _ball(inputs: Inputs, tables: Tables) -> dict[str, Any]:
+    """What both film solvers take beside liquid and speed."""
+    names = (
+        "normal_force",
+        "sphere_radius",
+        "frictional_shear_stress",
+        "area_correction",
+        "velocity_shift_factor",
     )
+    return {name: inputs[name] for name in names} | {
+        "skin": skin_of(inputs),
+        "spectrum": spectrum_of(inputs, tables),
+        "thickest_film": limit_of(inputs, "inlet_film_limit"),
+        "largest_strain": limit_of(inputs, "strain_limit"),
+    }
 
 
 def limit_of(inputs: Inputs, name: str) -> float:
@@ -112,7 +121,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
     return found
 
 
-def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, NDArray[np.bool_]]:
+def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
     """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast."""
     modulus = skin_of(inputs).contact_modulus
     cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)
@@ -139,21 +148,8 @@ def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str,
     batch = max(len(speeds), *(np.shape(value)[0] for value in inputs.values()))
     rows = []
     for b, one in enumerate(_one_by_one(inputs, batch)):
-        skin = skin_of(one)
-        number = {name: float(np.asarray(value)) for name, value in one.items()}
-        curve, _ = stribeck_curve_of_liquid(
-            speeds[b if len(speeds) > 1 else 0],
-            tables.flow_curves[int(number[_CURVE])],
-            sphere_radius=number["sphere_radius"],
-            normal_force=number["normal_force"],
-            skin=type(skin)(**{name: float(np.asarray(part)) for name, part in vars(skin).items()}),
-            spectrum=spectrum_of(one, tables),
-            frictional_shear_stress=number["frictional_shear_stress"],
-            area_correction=number["area_correction"],
-            velocity_shift_factor=number["velocity_shift_factor"],
-            thickest_film=limit_of(one, "inlet_film_limit"),
-            largest_strain=limit_of(one, "strain_limit"),
-        )
+        liquid = tables.flow_curves[int(one[_CURVE])]
+        curve, _ = stribeck_curve_of_liquid(speeds[b if len(speeds) > 1 else 0], liquid, **_ball(one, tables))
         rows.append(_everything(curve, one))
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
-from skinbayes.emulation import Progress, Stored, Unfinished, cached
-from skinbayes.forward.base import Inputs, Ranges, Tables
+from skinbayes.arrays import BoolArray, FloatArray
+from skinbayes.emulation import Progress, kept_table
+from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
+from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     film_flags,
@@ -25,18 +25,16 @@ from skinbayes.lubrication import (
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
     FilmTable,
+    FilmTablePlan,
     FlowCurve,
     LiquidRows,
+    LubricatedBalls,
     build_film_table,
-    film_table_key,
     liquid_rows,
     tabulated_friction,
     tabulated_friction_of_liquids,
 )
 from skinbayes.roughness import rms_height
-
-if TYPE_CHECKING:
-    from skinbayes.forward.base import ForwardModel
 
 AFTERWARDS = (
     "frictional_shear_stress", "velocity_shift_factor", "additive_friction", "speed_viscosity_product", "viscosity",
@@ -65,7 +63,7 @@ class TabulatedStribeck:
         found, _ = self._friction(inputs, tables)
         return {name: found[name] for name in FIELDS}
 
-    def flags(self, inputs: Inputs, tables: Tables) -> dict[str, NDArray[np.bool_]]:
+    def flags(self, inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
         """The flags of `FLAGS`, each ``(B, N)``."""
         found, products = self._friction(inputs, tables)
         shape, strain = products.shape, found["strain"]
@@ -85,21 +83,21 @@ class TabulatedStribeck:
         parameters = {name: inputs[name] for name in _HELD if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
-        others: Any = {
-            "parameters": parameters,
-            "frictional_shear_stress": inputs["frictional_shear_stress"],
-            "velocity_shift_factor": inputs["velocity_shift_factor"],
-            "everything": True,
-            "thickest_film": limit_of(inputs, "inlet_film_limit"),
-            "largest_strain": limit_of(inputs, "strain_limit"),
-        }
+        balls = LubricatedBalls(
+            parameters=parameters,
+            frictional_shear_stress=inputs["frictional_shear_stress"],
+            velocity_shift_factor=inputs["velocity_shift_factor"],
+            everything=True,
+            thickest_film=limit_of(inputs, "inlet_film_limit"),
+            largest_strain=limit_of(inputs, "strain_limit"),
+        )
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
-            friction = tabulated_friction(self.table, products, **others)
+            friction = tabulated_friction(self.table, products, balls=balls)
             unmeasured = np.zeros(friction.friction_coefficient.shape)
         else:
             friction, liquid = tabulated_friction_of_liquids(
-                self.table, inputs["sliding_speed"], liquids=_liquids(tables.flow_curves), **others
+                self.table, inputs["sliding_speed"], balls=balls, liquids=_liquids(tables.flow_curves)
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
@@ -137,28 +135,22 @@ def prepare(
             f"{' and '.join(varying)} {'varies' if len(varying) == 1 else 'vary'}.",
         )
     fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
-    from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
-
     spectrum = spectrum_of(fixed, tables)
     held = {name: ranges[name] for name in _HELD if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
-    fixed_for_table: Any = {
+    numbers: Any = {
         name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
-    } | {"largest_strain": float(fixed["strain_limit"])}
+    }
+    plan = FilmTablePlan(held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
 
-    def build(unfinished: Unfinished) -> Stored:
-        table = build_film_table(
-            held, spectrum, **fixed_for_table, processes=cores, progress=progress, kept=unfinished
-        )
-        return table.to_arrays()
-
-    stored = cached(
+    table = kept_table(
         "stribeck",
-        film_table_key(held, spectrum, **fixed_for_table),
-        build,
+        plan.key(),
+        FilmTable,
+        lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
     )
-    table = FilmTable.from_arrays(*stored)
+    assert table is not None
     tabulated = TabulatedStribeck(table, names)
     middle, far, worst = (100 * float(error) for error in table.held_out)
     return replace(

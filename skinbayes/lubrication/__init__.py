@@ -10,14 +10,15 @@ from skinbayes.lubrication.asperities import (
 from skinbayes.lubrication.effective_viscosity import EffectiveViscosity, stribeck_curve_of_liquid
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS, FilmAxes, film_axes
+from skinbayes.lubrication.film_plan import FilmTablePlan
 from skinbayes.lubrication.film_table import FilmTable
 from skinbayes.lubrication.film_table_build import build_film_table
 from skinbayes.lubrication.film_table_evaluation import (
+    LubricatedBalls,
     TabulatedFriction,
     tabulated_friction,
     tabulated_friction_of_liquids,
 )
-from skinbayes.lubrication.film_table_key import film_table_key
 from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import (
     FlowFactors,
@@ -56,11 +57,13 @@ __all__ = [
     "EffectiveViscosity",
     "FilmAxes",
     "FilmTable",
+    "FilmTablePlan",
     "FlowCurve",
     "FlowFactors",
     "FrictionFactors",
     "GapFactors",
     "LiquidRows",
+    "LubricatedBalls",
     "LubricatedFilms",
     "PatirCheng",
     "Rheology",
@@ -73,7 +76,6 @@ __all__ = [
     "asperity_table",
     "build_film_table",
     "film_axes",
-    "film_table_key",
     "gap_flow_factors",
     "law_of_table",
     "liquid_rows",

@@ -5,9 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import FloatArray, IndexArray
 
 _ENDS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # no jump of the third derivative at the point before the end
 
@@ -27,7 +26,7 @@ def _inverse(count: int) -> FloatArray:
     return np.ascontiguousarray(np.linalg.inv(matrix)[:, :count])
 
 
-def cell_of(position: FloatArray, count: int) -> tuple[NDArray[np.intp], FloatArray]:
+def cell_of(position: FloatArray, count: int) -> tuple[IndexArray, FloatArray]:
     """Cell 0 … S − 2 and place 0 … 1 in it, of positions 0 … S − 1 counted in spacings."""
     cell = position.astype(np.intp)
     np.minimum(cell, count - 2, out=cell)
@@ -63,7 +62,7 @@ def cubic_slopes(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray,
 
 
 def gather(
-    coefficients: FloatArray, start: NDArray[np.intp], offset: int, weights: tuple[FloatArray, ...]
+    coefficients: FloatArray, start: IndexArray, offset: int, weights: tuple[FloatArray, ...]
 ) -> FloatArray:
     """Sum of four weighted coefficients of a flat array, from ``start + offset`` on."""
     total = weights[0] * coefficients[offset:].take(start)
@@ -74,7 +73,7 @@ def gather(
 
 def gather_both(
     coefficients: FloatArray,
-    start: NDArray[np.intp],
+    start: IndexArray,
     offset: int,
     weights: tuple[FloatArray, ...],
     slopes: tuple[FloatArray, ...],

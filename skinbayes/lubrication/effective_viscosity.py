@@ -7,9 +7,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.contact.solid import ElasticSolid
@@ -37,7 +36,7 @@ class EffectiveViscosity(NamedTuple):
 
     viscosity: FloatArray
     shear_rate: FloatArray
-    unmeasured: NDArray[np.bool_]
+    unmeasured: BoolArray
 
 
 def stribeck_curve_of_liquid(

@@ -13,9 +13,8 @@ from itertools import combinations, product
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
 from skinbayes.contact.solid import reduced_modulus
 from skinbayes.errors import InputError
@@ -163,7 +162,7 @@ class FilmAxes:
         end = -1 + _BEND * np.logaddexp(0.0, (fullest + 1) / _BEND)
         return np.asarray(_NARROWEST - _BEND * np.logaddexp(0.0, (_NARROWEST - end) / _BEND))
 
-    def contains(self, log_parameters: Sequence[FloatArray]) -> NDArray[np.bool_]:
+    def contains(self, log_parameters: Sequence[FloatArray]) -> BoolArray:
         """Where the table holds the parameters, or similar ones; boolean of broadcast shape."""
         inside = np.ones(np.broadcast_shapes(*(np.shape(p) for p in log_parameters)), dtype=bool)
         for coordinate in self.coordinates(log_parameters):

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray, IndexArray
 from skinbayes.emulation.chebyshev import summed
 from skinbayes.lubrication._uniform_spline import (
     cell_of,
@@ -20,9 +19,19 @@ from skinbayes.lubrication._uniform_spline import (
 )
 from skinbayes.lubrication.film_axes import Scales, film_scales
 from skinbayes.lubrication.film_reference import SmoothFilms
-from skinbayes.lubrication.film_table import ANCHORS, FASTEST, SLOWEST, FilmTable
+from skinbayes.lubrication.film_table import (
+    ANCHORS,
+    BOUNDARY,
+    CENTRAL,
+    COUETTE,
+    FASTEST,
+    FRACTION,
+    MINIMUM,
+    PRESSURE_FLOW,
+    SLOWEST,
+    FilmTable,
+)
 
-CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
 _REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
 _POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
@@ -44,19 +53,19 @@ class ContractedFilms:
     """
 
     flat: FloatArray
-    start: NDArray[np.intp]
+    start: IndexArray
     anchor: FloatArray
     unit: FloatArray
     speeds: int
     smooth: SmoothFilms
     scales: Scales
-    inside: NDArray[np.bool_]
+    inside: BoolArray
 
     def points(self, shape: tuple[int, int]) -> ContractedFilms:
         """The same for vectors and rows of the given shape one after the other, as arrays of one axis."""
         return self._mapped(lambda array: np.broadcast_to(array, shape).reshape(-1))
 
-    def chosen(self, places: NDArray[np.intp]) -> ContractedFilms:
+    def chosen(self, places: IndexArray) -> ContractedFilms:
         """Some of the points."""
         return self._mapped(lambda array: array.take(places))
 
@@ -145,7 +154,7 @@ class _Ends:
             value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
         return [value] if rate is None else [value, rate]
 
-    def _rate(self, output: int, where: tuple[NDArray[np.intp], ...], point: int) -> FloatArray:
+    def _rate(self, output: int, where: tuple[IndexArray, ...], point: int) -> FloatArray:
         """Derivative by ln λ at the first or last speed, of chosen places."""
         films = self.films
         start = (

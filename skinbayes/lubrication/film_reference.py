@@ -43,6 +43,8 @@ class SmoothFilms:
     def __call__(self, log_number: FloatArray, outputs: range, slope: bool = False) -> list[FloatArray]:
         """ln of some outputs at ln λ, any shape; with ``slope`` each is followed by its derivative.
 
+        On even points: SciPy's piecewise polynomials take 1.7 times as long for values, 4.7 times with the derivative.
+
         Below the range they go on as powers of λ, above it the values at its end are given.
         """
         cells = self.coefficients.shape[1] - 3

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,19 +9,11 @@ from scipy.interpolate import PchipInterpolator
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.area import relative_contact_area
-from skinbayes.contact.homogeneous import HomogeneousSolid
-from skinbayes.contact.layered import LayeredSkin
-from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
-from skinbayes.contact.solid import ElasticSolid, reduced_modulus
-from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.contact.line_contact import line_contact
 from skinbayes.errors import InputError
-from skinbayes.lubrication.asperities import AsperityLaw, asperity_table, law_of_table
+from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
-from skinbayes.lubrication.film_axes import FilmAxes, film_axes, film_parameters, range_logarithms
-from skinbayes.roughness.spectrum import PowerSpectrum
-
-CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
-"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load fraction of asperities."""
+from skinbayes.lubrication.film_table import FRACTION
 
 HALF, FAINT = 0.5, 1e-3
 """Load fractions of the asperities at the two lubrication numbers that a table counts speeds from."""
@@ -38,113 +29,23 @@ _ANCHOR_NODES = 56
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
-    """What a table of films takes as given: the shape of the spectrum, Poisson ratios and γ.
-
-    Attributes
-    ----------
-    spectrum : power spectrum of one surface, C in m^4; its rms height is a scale only
-    poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless
-    area_correction : γ, dimensionless
-    homogeneous : the solid has no layer; then E is E1, and ν is ν1
-    """
-
-    spectrum: PowerSpectrum
-    poisson_ratio_layer: float
-    poisson_ratio_bulk: float
-    area_correction: float
-    homogeneous: bool = False
-
-    @property
-    def rms_height(self) -> float:
-        """h_rms of the spectrum as it is given, m."""
-        return float(np.sqrt(2 * np.pi * self.spectrum.partial_moment(1.0)))
-
-    def stress_scale(self, ranges: Mapping[str, tuple[float, float]]) -> float:
-        """√V/(E0 h_rms), 1/m, for the softest layer on the stiffest tissue of some ranges of the parameters, SI."""
-        range_logarithms(ranges)
-        named = film_parameters(ranges, (1.0, 1.0))
-        bulk = named["young_modulus_bulk"][1]
-        layer = max(named["young_modulus_layer"][0], bulk)
-        skin = self.solid(layer, bulk, named["layer_thickness"][0])
-        return float(np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self.rms_height))
-
-    def axes(
-        self,
-        ranges: Mapping[str, tuple[float, float]],
-        largest_strain: float,
-        counts: Mapping[str, int] | None = None,
-    ) -> FilmAxes:
-        """Axes of a table for some ranges of the parameters, SI, see `film_axes`."""
-        return film_axes(
-            ranges,
-            self.poisson_ratio_bulk,
-            largest_strain=largest_strain,
-            counts=counts,
-            stress_scale=self.stress_scale(ranges),
-        )
-
-    def solid(self, layer: float, bulk: float, thickness: float) -> ElasticSolid:
-        """The solid of given moduli, Pa, and thickness of the layer, m."""
-        if self.homogeneous:
-            return HomogeneousSolid(young_modulus=bulk, poisson_ratio=self.poisson_ratio_bulk)
-        return LayeredSkin(
-            young_modulus_layer=layer,
-            young_modulus_bulk=bulk,
-            poisson_ratio_layer=self.poisson_ratio_layer,
-            poisson_ratio_bulk=self.poisson_ratio_bulk,
-            layer_thickness=thickness,
-        )
-
-    def material(self, log_parameters: FloatArray) -> Material:
-        """Asperity law and twice the stress variance at parameters given by their ln, SI, shape ``(6,)``."""
-        layer, bulk, height, _, _, thickness = np.exp(log_parameters).tolist()
-        skin = self.solid(layer, bulk, thickness)
-        law = law_of_table(*asperity_table(self.spectrum, skin, area_correction=self.area_correction))
-        twice_variance = float(twice_stress_variance(self.spectrum, skin))
-        return Material(law, twice_variance, layer * self.rms_height, layer / bulk, thickness, height)
-
-
-@dataclass(frozen=True, eq=False)
-class Material:
-    """Asperity law of one ratio of moduli and one layer thickness; other roughness and moduli follow by scaling.
-
-    Attributes
-    ----------
-    law : p_a (Pa) against ū (m) at the rms height of the spectrum
-    twice_variance : V there, Pa²
-    stiffness : E0 h_rms there, Pa m
-    ratio : E0/E1, dimensionless
-    thickness : d, m
-    height : h_rms of the parameters it was asked with, m
-    """
-
-    law: AsperityLaw
-    twice_variance: float
-    stiffness: float
-    ratio: float
-    thickness: float
-    height: float
-
-
-@dataclass(frozen=True, eq=False)
 class Ball:
     """A ball on a rough material, ready for the film solver.
 
     Attributes
     ----------
-    surface : what was given
     law : p_a (Pa) against ū (m)
     twice_variance : V, Pa²
+    area_correction : γ, dimensionless
     stiffness : E0 h_rms, Pa m
     cylinder_radius : Rc, m
     load_per_length : f_N, N/m
     reduced_modulus : E1*, Pa
     """
 
-    surface: Surface
     law: AsperityLaw
     twice_variance: float
+    area_correction: float
     stiffness: float
     cylinder_radius: float
     load_per_length: float
@@ -173,7 +74,7 @@ class Ball:
                 nodes=nodes + more,
             )
             area = relative_contact_area(
-                films.asperity_pressure, self.twice_variance, area_correction=self.surface.area_correction
+                films.asperity_pressure, self.twice_variance, area_correction=self.area_correction
             )
             # 1 − (1 − fraction) has no digits where the fraction is small
             carried = films.asperity_pressure @ films.load_weight / self.load_per_length
@@ -211,21 +112,3 @@ class Ball:
         useful = np.abs(odds) < _LARGEST_ODDS
         faint, half = PchipInterpolator(odds[useful][::-1], log_number[useful][::-1])(wanted).tolist()
         return half, faint - half
-
-
-def ball_at(surface: Surface, material: Material, log_parameters: FloatArray) -> Ball:
-    """Ball at parameters given by their ln (SI, shape ``(6,)``), on a material with the same E0/E1 and d."""
-    layer, bulk, height, radius, force, _ = np.exp(log_parameters).tolist()
-    modulus = float(reduced_modulus(bulk, surface.poisson_ratio_bulk))
-    cylinder = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
-    stiffness = layer * height
-    times = stiffness / material.stiffness
-    return Ball(
-        surface,
-        material.law.scaled(surface.rms_height / height, 1 / times),
-        material.twice_variance * times * times,
-        stiffness,
-        float(cylinder.cylinder_radius),
-        float(cylinder.load_per_length),
-        modulus,
-    )

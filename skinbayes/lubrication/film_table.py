@@ -1,22 +1,21 @@
-"""A table of films under rough lubricated balls: what it holds, and how it is stored."""
+"""A table of films under rough lubricated balls: what it holds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
-from skinbayes.emulation.stored import from_arrays, to_arrays
-from skinbayes.errors import InputError
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_parameters
 from skinbayes.lubrication.film_reference import SmoothFilms
 
 VERSION = 1
-"""Of what the numbers in a table mean; tables of another version are refused."""
+"""Of what the numbers in a table mean; tables of another version are built anew."""
+
+CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
+"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load fraction of asperities."""
 
 ANCHORS = 2
 """Numbers before the outputs of a material: ln λ that speeds are counted from, and the unit of ln λ."""
@@ -50,28 +49,7 @@ class FilmTable:
     held_out: FloatArray
     held_out_count: int
 
-    def to_arrays(self) -> tuple[dict[str, FloatArray], dict[str, Any]]:
-        """Everything as arrays by name, and the rest as numbers and texts that JSON can hold; no objects."""
-        arrays, metadata = to_arrays(self)
-        return arrays, {"version": VERSION, **metadata}
-
-    @classmethod
-    def from_arrays(cls, arrays: Mapping[str, Any], metadata: Mapping[str, Any]) -> FilmTable:
-        """The table that `to_arrays` took apart.
-
-        Raises
-        ------
-        InputError
-            if it is of another version or something is missing
-        """
-        if metadata.get("version") != VERSION:
-            raise InputError(
-                f"A table of films has version {metadata.get('version')}, but this program reads version {VERSION}."
-            )
-        table: FilmTable = from_arrays(cls, arrays, metadata)
-        return table
-
-    def contains(self, **parameters: Any) -> NDArray[np.bool_]:
+    def contains(self, **parameters: Any) -> BoolArray:
         """Where the table holds parameters (SI, broadcast), or balls that are similar.
 
         They are named as `FILM_PARAMETERS`, or as `HOMOGENEOUS_PARAMETERS`.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -10,27 +9,17 @@ from itertools import product
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.emulation import Kept, Progress, Tasks
 from skinbayes.emulation.chebyshev import grid_coefficients, summed, zeros
 from skinbayes.lubrication._uniform_spline import spline_coefficients
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
+from skinbayes.lubrication.film_plan import FilmTablePlan
 from skinbayes.lubrication.film_reference import smooth_films
-from skinbayes.lubrication.film_sweeps import Ball, Material, Surface, ball_at
+from skinbayes.lubrication.film_sweeps import Ball
 from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
-from skinbayes.lubrication.film_table_evaluation import tabulated_friction
-from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM
-from skinbayes.roughness.spectrum import PowerSpectrum
-
-SPEEDS = 31
-"""Speeds of a table unless told otherwise."""
-
-TABLE_NODES = 96
-"""Places across the contact of the solutions in a table: friction is then within 0.2 % of that on many more."""
-
-CHECKED = 120
-"""Random places at which a table is checked unless told otherwise."""
+from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
+from skinbayes.lubrication.stribeck import THICKEST_FILM
 
 _ANCHOR_COUNT = (
     5  # nodes of an axis, at most, at which the anchors are found; between them they are polynomials
@@ -39,37 +28,15 @@ _CHECK_NODES = 128
 
 
 def build_film_table(
-    ranges: Mapping[str, tuple[float, float]],
-    spectrum: PowerSpectrum,
-    *,
-    poisson_ratio_layer: float = 0.5,
-    poisson_ratio_bulk: float = 0.5,
-    area_correction: float = AREA_CORRECTION,
-    counts: Mapping[str, int] | None = None,
-    speeds: int = SPEEDS,
-    nodes: int = TABLE_NODES,
-    checked: int = CHECKED,
-    processes: int = 1,
-    progress: Progress | None = None,
-    largest_strain: float = LARGEST_STRAIN,
-    kept: Kept | None = None,
+    plan: FilmTablePlan, *, processes: int = 1, progress: Progress | None = None, kept: Kept | None = None
 ) -> FilmTable:
     """Table of the films under a ball on rough skin, or another solid, for parameters within ranges (Sect. 6 of the paper).
 
     Parameters
     ----------
-    ranges : smallest and largest value of each of the `FILM_PARAMETERS`, or of the `HOMOGENEOUS_PARAMETERS`, SI (Pa, m, N);
-        equal for a fixed one
-    spectrum : power spectrum of one surface, C in m^4; its shape counts, the rms height comes from the ranges
-    poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless; ν1 is that of a homogeneous solid
-    area_correction : γ, dimensionless, 0 < γ ≤ 1
-    counts : nodes of an axis, dimensionless, by its name; see `film_axes`
-    speeds : number of speeds, dimensionless
-    nodes : places across the contact, dimensionless
-    checked : number of random places, dimensionless, at which the table is compared with direct solutions
+    plan : `FilmTablePlan`, what the table is to hold
     processes : how many solve at once, dimensionless
     progress : told the number of sweeps that are done and of all
-    largest_strain : b/Rc, dimensionless, that the table has to reach
     kept : where solutions are kept until the table is done; a build that finds some there goes on from them, to the same table
 
     Returns
@@ -100,31 +67,27 @@ def build_film_table(
     >>> ball = {"young_modulus_layer": 7e6, "young_modulus_bulk": 20e3, "rms_height": 22.4e-6, "sphere_radius": 8e-3,
     ...         "normal_force": 0.2, "layer_thickness": 20e-6}
     >>> ranges = {name: (value, value) for name, value in ball.items()}
-    >>> table = build_film_table(ranges, named_surface("paper_reference"), checked=0)
+    >>> table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), checked=0))
     >>> print(table.axes.names, table.contains(**ball), table.contains(**{**ball, "rms_height": 1e-5}))
     () True False
     """
-    surface = Surface(
-        spectrum, poisson_ratio_layer, poisson_ratio_bulk, area_correction, "young_modulus" in ranges
-    )
-    axes = surface.axes(ranges, largest_strain, counts)
+    axes = plan.axes
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
-    sweeps = len(places) + len(coarse_places) + checked
-    materials = _Materials(surface)
+    sweeps = len(places) + len(coarse_places) + plan.checked
 
     with Tasks(processes, sweeps, progress, kept) as solve:
-        balls = (materials.ball(axes.representative(place)) for place in coarse_places)
+        balls = (plan.ball(axes.representative(place)) for place in coarse_places)
         anchors = solve("anchors", Ball.anchors, balls)
         anchor_terms = grid_coefficients(anchors.reshape(*coarse, 2), ends=False)
         at_nodes = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
         more = [(0, count - size) for count, size in zip(axes.counts, coarse, strict=True)]
         anchor_terms = np.pad(anchor_terms, [*more, (0, 0)])
 
-        grid = np.linspace(SLOWEST, FASTEST, speeds)
+        grid = np.linspace(SLOWEST, FASTEST, plan.speeds)
         numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
-        balls = (materials.ball(axes.representative(place)) for place in places)
-        outputs = solve("outputs", partial(_outputs, nodes=nodes), zip(balls, numbers, strict=True))
+        balls = (plan.ball(axes.representative(place)) for place in places)
+        outputs = solve("outputs", partial(_outputs, nodes=plan.nodes), zip(balls, numbers, strict=True))
         smooth = smooth_films()
         for output, reference in zip((0, 2, 3, 4), smooth(numbers, range(4)), strict=True):
             outputs[:, output] -= reference
@@ -135,17 +98,13 @@ def build_film_table(
         table = FilmTable(
             axes=axes,
             coefficients=np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
-            speeds=speeds,
+            speeds=plan.speeds,
             smooth=smooth,
-            poisson_ratio_bulk=poisson_ratio_bulk,
+            poisson_ratio_bulk=plan.poisson_ratio_bulk,
             held_out=np.full(3, np.nan),
-            held_out_count=checked,
+            held_out_count=plan.checked,
         )
-        return (
-            replace(table, held_out=_check(table, materials, checked, solve, largest_strain))
-            if checked
-            else table
-        )
+        return replace(table, held_out=_check(table, plan, solve)) if plan.checked else table
 
 
 def _nodes_of(counts: tuple[int, ...]) -> FloatArray:
@@ -154,40 +113,20 @@ def _nodes_of(counts: tuple[int, ...]) -> FloatArray:
     return np.array(nodes).reshape(len(nodes), len(counts))
 
 
-class _Materials:
-    """Balls at parameters; asperity laws are kept, there are few."""
-
-    def __init__(self, surface: Surface) -> None:
-        self.surface = surface
-        self._known: dict[tuple[float, float], Material] = {}
-
-    def ball(self, log_parameters: FloatArray) -> Ball:
-        key = (round(float(log_parameters[0] - log_parameters[1]), 9), round(float(log_parameters[5]), 9))
-        if key not in self._known:
-            self._known[key] = self.surface.material(log_parameters)
-        return ball_at(self.surface, self._known[key], log_parameters)
-
-
 def _outputs(task: tuple[Ball, FloatArray], nodes: int) -> FloatArray:
     ball, log_number = task
     return ball.outputs(log_number, nodes)
 
 
-def _check(
-    table: FilmTable,
-    materials: _Materials,
-    count: int,
-    solve: Tasks,
-    largest_strain: float,
-) -> FloatArray:
+def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
     """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
     rng = np.random.default_rng(20130)
     axes = table.axes
     points: list[FloatArray] = []
-    while len(points) < count:
+    while len(points) < plan.checked:
         drawn = axes.tied(rng.uniform(axes.low, axes.high))
         strain = film_scales(list(drawn), table.poisson_ratio_bulk).strain
-        if strain <= np.log(largest_strain) and axes.contains(list(drawn)):
+        if strain <= np.log(plan.largest_strain) and axes.contains(list(drawn)):
             points.append(drawn)
     drawn = np.array(points)
     scales = film_scales(list(drawn.T), table.poisson_ratio_bulk)
@@ -195,10 +134,10 @@ def _check(
     films = contract(table, list(drawn.T[:, :, None]), 1)
     slowest = np.minimum((films.anchor + films.unit * (SLOWEST - 0.2))[:, 0], thickest)
     number = rng.uniform(slowest, thickest)
-    balls = [materials.ball(point) for point in drawn]
+    balls = [plan.ball(point) for point in drawn]
     # σ_f for which μ of small contacts is about 1 at rest
     shear_stress = np.array(
-        [np.sqrt(np.pi * materials.surface.area_correction * ball.twice_variance) / 2 for ball in balls]
+        [np.sqrt(np.pi * plan.area_correction * ball.twice_variance) / 2 for ball in balls]
     )
     found = solve("check", partial(_outputs, nodes=_CHECK_NODES), zip(balls, number[:, None], strict=True))
     outputs = found[..., 0]
@@ -213,9 +152,9 @@ def _check(
     tabulated = tabulated_friction(
         table,
         products,
-        parameters=parameters,
-        frictional_shear_stress=shear_stress,
-        largest_strain=largest_strain,
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=shear_stress, largest_strain=plan.largest_strain
+        ),
     ).friction_coefficient
     errors = np.abs(tabulated / direct - 1)
     return np.array([np.quantile(errors, 0.5), np.quantile(errors, 0.99), errors.max()])

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray, IndexArray
 from skinbayes.errors import InputError
 from skinbayes.lubrication.rheology import FlowCurve
 
@@ -30,14 +29,14 @@ class LiquidRows:
     cubics : coefficients of ln η by the place in a cell, 0 … 1, lowest first, dimensionless, each of shape ``(cells,)``
     """
 
-    liquid: NDArray[np.intp]
+    liquid: IndexArray
     lowest: FloatArray
     highest: FloatArray
     least: FloatArray
     most: FloatArray
     steps_per_unit: FloatArray
-    falling: NDArray[np.bool_]
-    start: NDArray[np.intp]
+    falling: BoolArray
+    start: IndexArray
     cubics: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
     def log_viscosity(self, log_rate: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -56,12 +55,12 @@ class LiquidRows:
         slope = (linear + place * (2 * square + place * (3 * cube))) * self.steps_per_unit
         return value, np.where(held == position, slope, 0.0)
 
-    def at(self, rows: NDArray[np.intp]) -> LiquidRows:
+    def at(self, rows: IndexArray) -> LiquidRows:
         """The liquids of some rows, by their numbers."""
         by_row = ("liquid", "lowest", "highest", "least", "most", "steps_per_unit", "falling", "start")
         return replace(self, **{name: getattr(self, name).take(rows) for name in by_row})
 
-    def measured(self, shear_rate: ArrayLike) -> NDArray[np.bool_]:
+    def measured(self, shear_rate: ArrayLike) -> BoolArray:
         """Where shear rates (1/s, shape ``(..., N)``) lie within those that were measured."""
         with np.errstate(invalid="ignore", divide="ignore"):
             log_rate = np.log(np.asarray(shear_rate, dtype=np.float64))

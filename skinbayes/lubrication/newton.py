@@ -12,10 +12,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.lubrication.grid import LineGrid
 
 Law = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -84,7 +83,7 @@ class Solver:
 
     def _assemble(
         self, pressure: FloatArray, film: FloatArray, number: float, transport: Transport
-    ) -> tuple[FloatArray, NDArray[np.bool_]]:
+    ) -> tuple[FloatArray, BoolArray]:
         """Fill the matrix; return the residual and the cells that are full of fluid."""
         grid, matrix, kernel = self.grid, self._matrix, self._kernel
         count = film.size

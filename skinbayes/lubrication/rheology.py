@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.errors import InputError
 
 SILICONE_SCALE = 1e4
@@ -73,7 +73,7 @@ def thinned_viscosity(
     >>> print(thinned_viscosity(1.0, [0.0, 1e4, 1e5]).round(4))
     [1.     0.8632 0.5   ]
     """
-    eta, rate, constant, power = arrays(low_shear_viscosity, shear_rate, scale, exponent)
+    eta, rate, constant, power = floats(low_shear_viscosity, shear_rate, scale, exponent)
     with np.errstate(all="ignore"):
         possible = (eta > 0) & (rate >= 0) & (constant > 0) & (power >= 0)
         fraction = eta / constant * rate**power
@@ -165,7 +165,7 @@ class FlowCurve:
     _curve: PchipInterpolator = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        rate, eta = arrays(self.shear_rate, self.measured_viscosity)
+        rate, eta = floats(self.shear_rate, self.measured_viscosity)
         if rate.ndim != 1 or rate.shape != eta.shape or rate.size < 2:
             raise InputError(
                 f"A flow curve has shear rates of shape {rate.shape} and viscosities of shape {eta.shape}, "

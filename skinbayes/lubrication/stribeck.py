@@ -6,9 +6,8 @@ from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray
 from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
@@ -79,16 +78,16 @@ class StribeckCurve:
     minimum_film: FloatArray
     central_film: FloatArray
     strain: FloatArray
-    strained: NDArray[np.bool_]
-    largely_strained: NDArray[np.bool_]
-    too_strained: NDArray[np.bool_]
-    film_beyond_ball: NDArray[np.bool_]
-    impossible: NDArray[np.bool_]
-    not_converged: NDArray[np.bool_]
-    shear_rate_unmeasured: NDArray[np.bool_]
+    strained: BoolArray
+    largely_strained: BoolArray
+    too_strained: BoolArray
+    film_beyond_ball: BoolArray
+    impossible: BoolArray
+    not_converged: BoolArray
+    shear_rate_unmeasured: BoolArray
 
     @property
-    def valid(self) -> NDArray[np.bool_]:
+    def valid(self) -> BoolArray:
         """Where there is a prediction."""
         return ~(self.too_strained | self.film_beyond_ball | self.impossible | self.not_converged)
 
@@ -181,26 +180,18 @@ def stribeck_curve(
         *(np.asarray(x, dtype=np.float64)[..., None] for x in case), table.separation[..., :1]
     )
     batch = inputs[0].shape[:-1]
+    liquid = {"flow_factors": flow_factors, "rheology": rheology, "nodes": nodes}
     cases = np.concatenate(inputs[:-1], axis=-1).reshape(-1, len(inputs) - 1)
     points = (np.broadcast_to(part, (*batch, part.shape[-1])) for part in table)
     knots, levels = (part.reshape(-1, part.shape[-1]) for part in points)
     rows = [
-        _one_curve(
-            products,
-            _Case(*row),
-            AsperityTable(*points),
-            flow_factors,
-            rheology,
-            nodes,
-            thickest_film,
-            largest_strain,
-        )
+        _one_curve(products, _Case(*row), AsperityTable(*points), liquid, thickest_film, largest_strain)
         for row, *points in zip(cases.tolist(), knots, levels, strict=True)
     ]
 
     def gather(name: str, kind: str) -> Any:
         # an empty batch has no row that tells its kind
-        stacked = np.array([row[name] for row in rows], dtype=bool if "bool" in kind else np.float64)
+        stacked = np.array([row[name] for row in rows], dtype=bool if kind == "BoolArray" else np.float64)
         if name == "strain":
             return stacked.reshape(batch)[()]
         return stacked.reshape((*batch, *given.shape))[()]
@@ -226,13 +217,11 @@ def _one_curve(
     products: FloatArray,
     case: _Case,
     table: AsperityTable,
-    flow_factors: FlowFactors | None,
-    rheology: Rheology | None,
-    nodes: int,
+    liquid: dict[str, Any],
     thickest_film: float,
     largest_strain: float,
 ) -> dict[str, Any]:
-    """The fields of a `StribeckCurve` for one set of parameters."""
+    """The fields of a `StribeckCurve` for one set of parameters; ``liquid`` is what `lubricated_films` takes beside them."""
     cylinder = cylinder_of_sphere(case.normal_force, case.sphere_radius, reduced_modulus=case.modulus)
     line = line_contact(cylinder.load_per_length, cylinder.cylinder_radius, reduced_modulus=case.modulus)
     load, strain = float(cylinder.load_per_length), float(line.half_width / cylinder.cylinder_radius)
@@ -265,9 +254,7 @@ def _one_curve(
             load_per_length=load,
             reduced_modulus=case.modulus,
             asperities=law_of_table(*table),
-            flow_factors=flow_factors,
-            rheology=rheology,
-            nodes=nodes,
+            **liquid,
         )
         area = relative_contact_area(
             films.asperity_pressure, case.twice_variance, area_correction=case.area_correction
@@ -275,14 +262,14 @@ def _one_curve(
         boundary = case.shear_stress * (area @ films.load_weight) / load
         for name in names:
             result[name][solved] = boundary if name == "boundary" else getattr(films, name)
-        if rheology is not None:
-            result["shear_rate_unmeasured"][solved] = _unmeasured(shifted[solved], films, rheology)
+        if liquid["rheology"] is not None:
+            result["shear_rate_unmeasured"][solved] = _unmeasured(shifted[solved], films, liquid["rheology"])
     result["friction_coefficient"] = result["boundary"] + result["couette"] + result["pressure_flow"]
     result["not_converged"] = solved & np.isnan(result["friction_coefficient"])
     return result
 
 
-def _unmeasured(products: FloatArray, films: LubricatedFilms, rheology: Rheology) -> NDArray[np.bool_]:
+def _unmeasured(products: FloatArray, films: LubricatedFilms, rheology: Rheology) -> BoolArray:
     """Where the fastest sheared place, or the middle of the film, lies outside the known shear rates."""
     low, high = rheology.shear_rate_range
     speed = products / rheology.low_shear_viscosity

@@ -18,7 +18,7 @@ from skinbayes.plot.predictive import (
     predictive_quantiles,
 )
 from skinbayes.plot.profile_bands import MOST_CURVES, Band, profile_bands
-from skinbayes.plot.rows import row_abscissa
+from skinbayes.plot.rows import varying
 from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks
 from skinbayes.plot.style import (
     OBSERVED,
@@ -95,13 +95,6 @@ def plot_data(fit: FitResult, width: str | None = None) -> Figure:
     return figure
 
 
-def varying(fit: FitResult) -> tuple[str, FloatArray] | None:
-    """Name and values of the condition against which data are drawn, shape ``(N,)``, SI; None if there is none."""
-    if fit.problem is None:
-        return None
-    return row_abscissa(fit.problem, np.median(fit.theta(), axis=0))
-
-
 @dataclass(frozen=True)
 class _View:
     """What one panel shows, SI."""
@@ -156,8 +149,7 @@ def _panel(ax: Axes, fit: FitResult, view: _View) -> None:
     ticks(ax.xaxis, x_scale, *ax.get_xlim(), most=6, between=True)
     ticks(ax.yaxis, y_scale, *ax.get_ylim(), most=5, between=True)
     ax.set_ylabel(y_scale.label(y_name))
-    ax.grid(color="#E6E6E6", linewidth=0.6)
-    ax.set_axisbelow(True)
+    ax.grid()
 
 
 def _curves(ax: Axes, view: _View, x_scale: Scale, y_scale: Scale) -> list[tuple[IntArray, str]]:

@@ -13,13 +13,14 @@ from skinbayes.plot.rows import (
     effect_draws,
     group_columns,
     levels_of_rows,
-    row_abscissa,
     row_predictions,
     telling_columns,
+    varying,
     varying_conditions,
 )
 from skinbayes.plot.scales import axis_scale, plain_number, round_values, scale_for, ticks
 from skinbayes.plot.style import (
+    GONE,
     OBSERVED,
     POSTERIOR,
     SMALL,
@@ -30,6 +31,7 @@ from skinbayes.plot.style import (
     new_figure,
     sentence_figure,
     set_title,
+    shortened,
 )
 from skinbayes.plot.symbols import axis_name, figure_text, spoken_name
 from skinbayes.vocabulary import lookup
@@ -48,8 +50,6 @@ MOST_CONDITIONS = 3
 
 LONGEST, LONGEST_SMALL = 26, 18
 """Letters of the name of a level, in wide and in narrow figures."""
-
-GONE = "The model or its data are gone, so that nothing can be predicted from this result."
 
 
 def plot_effects(
@@ -83,7 +83,9 @@ def plot_effects(
     height = above + below + between * (len(columns) - 1) + 0.24 * sum(counts)
     size = inches(width, WIDTH + 1.4)
     letters = LONGEST if size >= SMALL else LONGEST_SMALL
-    longest = max(len(_short(level, letters)) for column in columns for level in levels_of_rows(fit, column))
+    longest = max(
+        len(shortened(level, letters)) for column in columns for level in levels_of_rows(fit, column)
+    )
     with look(size):
         figure = new_figure(
             size, height, left=0.3 + (0.078 if size >= SMALL else 0.066) * longest, bottom=below, top=above,
@@ -135,11 +137,10 @@ def _levels(ax: Axes, fit: FitResult, column: str, predictions: RowPredictions, 
             label="rows" if y_position == 0 else None,
         )  # fmt: skip
     ax.axvline(0.0, color="#1A1A1A", linewidth=0.8, linestyle=(0, (4, 3)))
-    ax.set_yticks(np.arange(len(names)), [_short(name, letters) for name in names], parse_math=False)
+    ax.set_yticks(np.arange(len(names)), [shortened(name, letters) for name in names], parse_math=False)
     ax.set_ylim(-0.7, len(names) - 0.3)
     ax.set_title(f"by {spoken_name(column)}", loc="left", pad=4.0)
-    ax.grid(axis="x", color="#E2E2E2", linewidth=0.6)
-    ax.set_axisbelow(True)
+    ax.grid(axis="x")
 
 
 def plot_residuals(
@@ -163,7 +164,7 @@ def plot_residuals(
     title = "What is left between data and model"
     if fit.problem is None:
         return sentence_figure(fit, title, GONE, width)
-    abscissa = row_abscissa(fit.problem, np.median(fit.theta(), axis=0))
+    abscissa = varying(fit)
     if abscissa is None:
         return sentence_figure(
             fit,
@@ -223,8 +224,7 @@ def _against(ax: Axes, values: FloatArray, name: str, residuals: FloatArray) -> 
     reach = 1.1 * float(np.nanmax(np.abs(residuals))) or 1.0
     ax.set_ylim(-reach, reach)
     ax.set_xlabel(scale.label(label))
-    ax.grid(color="#ECECEC", linewidth=0.6)
-    ax.set_axisbelow(True)
+    ax.grid()
 
 
 def _residual_name(name: str, predictions: RowPredictions) -> str:
@@ -252,7 +252,3 @@ def _ratio_axis(axis: Axis, limits: tuple[float, float], logarithmic: bool) -> N
     axis.set_major_locator(FixedLocator([float(np.log(value)) for value in values]))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(float(f"{np.exp(value):.3g}"))))
-
-
-def _short(name: str, letters: int) -> str:
-    return name if len(name) <= letters else name[: letters - 1] + "…"

@@ -19,12 +19,13 @@ from skinbayes.plot.rows import (
     group_columns,
     label_columns,
     levels_of_rows,
-    row_abscissa,
     row_predictions,
     telling_columns,
+    varying,
 )
 from skinbayes.plot.scales import Scale, scale_for, ticks
 from skinbayes.plot.style import (
+    GONE,
     OBSERVED,
     POSTERIOR,
     SMALL,
@@ -34,6 +35,7 @@ from skinbayes.plot.style import (
     new_figure,
     sentence_figure,
     set_title,
+    shortened,
 )
 from skinbayes.plot.symbols import axis_name, spoken_name
 
@@ -99,13 +101,8 @@ def plot_levels(
         else "Data and model by group"
     )
     if fit.problem is None:
-        return sentence_figure(
-            fit,
-            title,
-            "The model or its data are gone, so that no curve can be computed from this result.",
-            width,
-        )
-    abscissa = row_abscissa(fit.problem, np.median(fit.theta(), axis=0))
+        return sentence_figure(fit, title, GONE, width)
+    abscissa = varying(fit)
     if column is None or column not in columns or abscissa is None:
         reason = "all rows have the same conditions" if abscissa is None else "no column groups them"
         return sentence_figure(fit, title, f"The data cannot be drawn by group: {reason}.", width)
@@ -234,12 +231,14 @@ def _panel(ax: Axes, view: _View, level: str, longest: int) -> None:
         x, view.y[order], "o", color=OBSERVED, markersize=3.6, markeredgecolor="white", markeredgewidth=0.4, label="measured"
     )  # fmt: skip
     effect = f"   {view.effects[level]}" if level in view.effects else ""
-    name = level if len(level) <= longest else level[: longest - 1] + "…"
     ax.set_title(
-        name + effect, fontsize=9.0 if longest == LONGEST else 7.5, loc="left", pad=3.0, parse_math=False
+        shortened(level, longest) + effect,
+        fontsize=9.0 if longest == LONGEST else 7.5,
+        loc="left",
+        pad=3.0,
+        parse_math=False,
     )
-    ax.grid(color="#ECECEC", linewidth=0.6)
-    ax.set_axisbelow(True)
+    ax.grid()
 
 
 def _dress(ax: Axes, view: _View) -> None:

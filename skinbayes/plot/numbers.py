@@ -4,41 +4,8 @@ from __future__ import annotations
 
 from math import ceil, floor, isfinite, log10
 
+from skinbayes.phrases import number
 from skinbayes.units import format_quantity, parse_quantity
-
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def number(value: float, digits: int = 3) -> str:
-    """A number with a few significant digits and no computer notation; zeros at its end are kept if they were rounded to.
-
-    Examples
-    --------
-    >>> number(2412.3), number(0.76543), number(1.3586e-4), number(float("inf")), number(120000.0)
-    ('2410', '0.765', '1.36 × 10⁻⁴', 'infinite', '1.2 × 10⁵')
-    >>> number(0.29974), number(0.3)
-    ('0.300', '0.3')
-    """
-    if not isfinite(value):
-        return "not a number" if value != value else "infinite" if value > 0 else "−infinite"
-    rounded = float(f"{value:.{digits}g}")
-    if rounded == 0.0:
-        return "0"
-    exponent = floor(log10(abs(rounded)) + 1e-12)
-    small = exponent < -3 or exponent >= 5
-    mantissa = rounded / 10.0**exponent if small else rounded
-    text = f"{mantissa:.{max(0, digits - 1 - (0 if small else exponent))}f}"
-    if "." in text and abs(value - rounded) <= 1e-9 * abs(rounded):
-        text = text.rstrip("0").rstrip(".")
-    if not small:
-        return text
-    power = power_of_ten(exponent)
-    return power if text == "1" else f"{text} × {power}"
-
-
-def power_of_ten(exponent: int) -> str:
-    """``"10⁻⁵"``."""
-    return f"10{str(exponent).translate(_RAISED)}"
 
 
 def prefix_of(typical: float, unit: str) -> tuple[float, str]:
@@ -85,19 +52,6 @@ def interval(low: float, high: float, unit: str, typical: float | None = None, j
     """
     factor, name = prefix_of(high if typical is None else typical, unit)
     return f"{number(low / factor)}{joint}{number(high / factor)} {name}".strip()
-
-
-def percent(fraction: float) -> str:
-    """A fraction in percent: ``"45 %"``, ``"0.4 %"``, ``"less than 0.1 %"``.
-
-    Examples
-    --------
-    >>> percent(0.4512), percent(0.00412), percent(0.0002), percent(0.0), percent(1.0)
-    ('45 %', '0.41 %', 'less than 0.1 %', '0 %', '100 %')
-    """
-    if 0.0 < fraction < 1e-3:
-        return "less than 0.1 %"
-    return f"{number(100.0 * fraction, 2)} %"
 
 
 def fraction(count: int, total: int) -> str:

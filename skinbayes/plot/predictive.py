@@ -18,6 +18,7 @@ from skinbayes.plot.style import (
     look,
     new_figure,
     set_title,
+    shortened,
 )
 from skinbayes.plot.symbols import figure_text, spoken_name
 from skinbayes.vocabulary import lookup
@@ -128,7 +129,7 @@ def _plot(fit: FitResult, group: str, title: str, colour: str, width: str | None
     longest = LONGEST if size >= SMALL else LONGEST_SMALL
     with look(size):
         if count <= MOST_LABELLED:
-            letters = max(len(_shortened(name, longest)) for name in rows)
+            letters = max(len(shortened(name, longest)) for name in rows)
             margin = 0.25 + (0.085 if size >= SMALL else 0.07) * letters
             height = 1.35 + 0.26 * max(count, 3) + (len(names) - 1) * (0.75 + 0.26 * count)
             figure = new_figure(size, height, left=margin, bottom=0.85)
@@ -140,7 +141,7 @@ def _plot(fit: FitResult, group: str, title: str, colour: str, width: str | None
         if len(names) > 1:
             figure.subplots_adjust(hspace=0.75 / (0.26 * max(count, 3)) if count <= MOST_LABELLED else 0.35)
         for i, (name, ax) in enumerate(zip(names, panels, strict=True)):
-            _panel(ax, name, observed[i], quantiles[:, i], [_shortened(row, longest) for row in rows], colour)
+            _panel(ax, name, observed[i], quantiles[:, i], [shortened(row, longest) for row in rows], colour)
         key_below(figure, panels[-1], 3)
         set_title(figure, fit, title)
     return figure
@@ -175,10 +176,6 @@ def _panel(
         ticks(axis, scale, low, high, most=5)
 
 
-def _shortened(name: str, longest: int) -> str:
-    return name if len(name) <= longest else name[: longest - 1] + "…"
-
-
 def _labelled(ax: Axes, bands: FloatArray, points: FloatArray, names: list[str], colour: str) -> None:
     y = np.arange(len(points))[::-1]
     ax.hlines(y, bands[0], bands[4], color=colour, alpha=0.35, linewidth=7.0, label="5–95 %")
@@ -196,8 +193,7 @@ def _labelled(ax: Axes, bands: FloatArray, points: FloatArray, names: list[str],
     )
     ax.set_yticks(y, names, parse_math=False)
     ax.set_ylim(-0.7, len(points) - 0.3)
-    ax.grid(axis="x", color="#E2E2E2", linewidth=0.6)
-    ax.set_axisbelow(True)
+    ax.grid(axis="x")
 
 
 def _dense(ax: Axes, bands: FloatArray, points: FloatArray, colour: str) -> None:

@@ -14,6 +14,7 @@ from skinbayes.plot.profile_bands import Band, profile_bands
 from skinbayes.plot.rows import abscissa_of_rows
 from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks
 from skinbayes.plot.style import (
+    GONE,
     OBSERVED,
     POSTERIOR,
     SERIES,
@@ -69,12 +70,7 @@ def plot_profile(fit: FitResult, abscissa: str | None = None, width: str | None 
     """
     title = "Curves of the model"
     if fit.problem is None:
-        return sentence_figure(
-            fit,
-            title,
-            "The model or its data are gone, so that no curve can be computed from this result.",
-            width,
-        )
+        return sentence_figure(fit, title, GONE, width)
     offered = profile_abscissas(fit.problem)
     if abscissa is not None and abscissa not in offered:
         known = f"it has curves against {', '.join(offered)}" if offered else "it has no curves"
@@ -148,8 +144,7 @@ def _panel(
     if profile.abscissa == "time" and all(float(np.nanmin(band.quantiles)) >= 0.0 for band in bands):
         ax.set_ylim(bottom=0.0)
     ticks(ax.yaxis, y_scale, *ax.get_ylim(), most=6, between=True)
-    ax.grid(color="#E6E6E6", linewidth=0.6)
-    ax.set_axisbelow(True)
+    ax.grid()
     label = y_scale.label(y_name)
     ax.set_ylabel(label if len(label) < 7 * width_of(ax) else label.replace(" $", "\n$", 1))
     return x_scale, *_ends(x_scale, bands, measured)

@@ -137,16 +137,17 @@ def abscissa_of_rows(problem: Problem, profile: Profile, middle: FloatArray) -> 
     return np.array(along, dtype=float) if np.ptp(along) > 0.0 else None
 
 
-def row_abscissa(problem: Problem, middle: FloatArray) -> tuple[str, FloatArray] | None:
+def varying(fit: FitResult) -> tuple[str, FloatArray] | None:
     """Name and values of what data are drawn against: the abscissa of their curve, else the condition that varies most.
 
-    None if all conditions are the same in all rows. Shape of the values ``(N,)``, SI.
+    None if all conditions are the same in all rows, or the problem is gone. Shape of the values ``(N,)``, SI.
     """
-    followed = followed_profile(problem, middle)
+    if fit.problem is None:
+        return None
+    followed = followed_profile(fit.problem, np.median(fit.theta(), axis=0))
     if followed is not None:
         return followed[0].abscissa, followed[1]
-    varying = varying_conditions(problem)
-    return next(iter(varying.items()), None)
+    return next(iter(varying_conditions(fit.problem).items()), None)
 
 
 def varying_conditions(problem: Problem) -> dict[str, FloatArray]:

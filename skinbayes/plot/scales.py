@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.plot.numbers import power_of_ten, prefix_of
+from skinbayes.phrases import power_of_ten
+from skinbayes.plot.numbers import prefix_of
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis

@@ -48,6 +48,9 @@ _SETTINGS: Any = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.linewidth": 0.8,
+    "axes.axisbelow": True,
+    "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.6,
     "lines.linewidth": 1.6,
     "mathtext.default": "regular",
     "figure.facecolor": "white",
@@ -152,6 +155,11 @@ def width_of(ax: Axes) -> float:
     return float(ax.figure.bbox.width / ax.figure.dpi)
 
 
+def shortened(name: str, longest: int) -> str:
+    """A name of at most so many letters."""
+    return name if len(name) <= longest else name[: longest - 1] + "…"
+
+
 def wrapped(ax: Axes, label: str) -> str:
     """The name of a curve in as many lines as the width of the figure asks for."""
     return "\n".join(figure_text(line) for line in wrap(label, letters_of_key(width_of(ax))))
@@ -185,6 +193,9 @@ def key_below(figure: Figure, ax: Axes, columns: int) -> None:
     figure.legend(
         handles, texts, loc="lower center", ncols=most, bbox_to_anchor=(0.5, 0.0), borderaxespad=0.2
     )
+
+
+GONE = "The model or its data are gone, so that nothing can be computed from this result."
 
 
 def sentence_figure(fit: FitResult, title: str, sentence: str, width: str | None = None) -> Figure:

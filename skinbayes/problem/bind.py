@@ -32,7 +32,6 @@ from skinbayes.problem.settings import apply_settings
 from skinbayes.problem.surface import Surface, choose_surface
 from skinbayes.problem.tied import resolve_ties
 from skinbayes.roughness import TabulatedSpectrum
-from skinbayes.vocabulary import QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -133,7 +132,7 @@ def _completed(
     columns = () if rows.dataset is None else rows.dataset.units
     check_required(spec, forward, given | ({REPLACED} if has_curves else set()), surface.spectrum, columns)
     defaults = [
-        ParameterSpec(key, QUANTITIES[key].unit, None, None, value, None, source=f"default of {forward.name}")
+        ParameterSpec.of_value(key, value, f"default of {forward.name}")
         for key, value in forward.defaults(given).items()
     ]
     inputs = resolve_ties([*parameters, *defaults], str(spec.path), rows.conditions.values)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.emulation import Progress
@@ -15,16 +14,14 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
-from skinbayes.forward import FlowCurve, ForwardModel, Profile, Tables
-from skinbayes.problem.batches import as_batch, unbatch
-from skinbayes.problem.covariates import apply_covariates, factor_key
+from skinbayes.forward import FlowCurve, ForwardModel, Tables
+from skinbayes.problem.batches import as_batch
+from skinbayes.problem.covariates import apply_covariates
 from skinbayes.problem.deduplicated_rows import DistinctRows, distinct_rows
-from skinbayes.problem.failures import FAILED, explained, without_underflow
+from skinbayes.problem.failures import explained
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.observations import Observation
-from skinbayes.problem.pieces import named_in_pieces
 from skinbayes.problem.ranges import input_ranges
-from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.statistics.groups import CrossedGroups
 
 
@@ -49,6 +46,16 @@ class BoundModel:
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
     settings : values set over the model file, as given
     tied : parameters that are multiples of free or fixed ones
+
+    Examples
+    --------
+    Examples of methods go on from this one.
+
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("forearm-glass")
+    >>> middle = problem.prior_medians()
+    >>> problem.observables, problem.conditions.n_rows
+    (('friction_coefficient',), 2)
     """
 
     spec: ModelSpec
@@ -104,7 +111,18 @@ class BoundModel:
         return np.concatenate([observation.values for observation in self.observations])
 
     def datum_labels(self) -> list[str]:
-        """A short name for each datum: its row, its observable, or both."""
+        """A short name for each datum: its row, its observable, or both.
+
+        Returns
+        -------
+        list of str
+            One for each datum.
+
+        Examples
+        --------
+        >>> problem.datum_labels()
+        ['dry', 'wet']
+        """
         rows = self.conditions.row_labels()
         if len(self.observations) < 2:
             return rows
@@ -120,8 +138,25 @@ class BoundModel:
     def prepare(self, progress: Progress | None = None, cores: int = 1) -> ForwardModel:
         """Build what the forward model wants to have ready before many evaluations, such as a table; once.
 
-        ``progress`` is called with steps done and their total; ``cores`` processes share the work. Without data or free
-        parameters nothing is built.
+        Parameters
+        ----------
+        progress : called with the number of steps done and their total
+        cores : processes that share the work
+
+        Returns
+        -------
+        ForwardModel
+            Prepared; as it is without data or free parameters, or if there is nothing to prepare.
+
+        Raises
+        ------
+        InputError
+            No table can be made for the priors.
+
+        Examples
+        --------
+        >>> problem.prepare().name
+        'friction'
         """
         if "model" in self.__dict__:
             return self.model
@@ -133,112 +168,24 @@ class BoundModel:
         self.__dict__["model"] = prepared
         return prepared
 
-    # -- predictions -------------------------------------------------------------------------------------------------
-
-    def predict(self, theta: ArrayLike, conditions: Conditions | None = None) -> dict[str, FloatArray]:
-        """Evaluate the forward model.
+    def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
+        """All inputs of the forward model and the noise by name.
 
         Parameters
         ----------
-        theta : ``(D,)`` or ``(B, D)``, SI
-        conditions : rows to predict; the data's own if omitted
+        theta : ``(B, D)``, SI
+        conditions : rows; the data's own if omitted
 
         Returns
         -------
         dict
-            Observable to predictions, ``(N,)`` or ``(B, N)``, SI. Observables of the data include the model's discrepancy
-            factor and covariates that act on them. Effects of groups are those of the median group, 0.
+            Input to values, ``(B or 1, N or 1)``, SI.
+
+        Examples
+        --------
+        >>> problem.inputs(middle[np.newaxis])["normal_force"].shape
+        (1, 2)
         """
-        batch, single = self._batch(theta)
-        rows, tables, deduplicated = conditions or self.conditions, self.tables, self.deduplicated
-        if conditions is not None:
-            curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, rows, self.spec.path)
-            tables = replace(tables, flow_curves=curves)
-            deduplicated = distinct_rows(plan_inputs(self.fixed, self.free, rows, self.tied), rows, tables)
-
-        def piece(part: FloatArray) -> dict[str, FloatArray]:
-            found = self.evaluate(self.inputs(part, conditions), tables, deduplicated)
-            shape = (len(part), rows.n_rows)
-            return {name: without_underflow(np.broadcast_to(value, shape)) for name, value in found.items()}
-
-        predicted = named_in_pieces(piece, batch, rows.n_rows)
-        return {name: unbatch(value, single) for name, value in predicted.items()}
-
-    def predict_data(self, theta: ArrayLike) -> FloatArray:
-        """Predictions of all data, one observable after the other, shape ``(M,)`` or ``(B, M)``, SI."""
-        predicted = self.predict(theta)
-        return np.concatenate([predicted[name] for name in self.observables], axis=-1)
-
-    def derived(self, theta: ArrayLike) -> dict[str, FloatArray]:
-        """Quantities between inputs and observables at the problem's rows, and the products named in the model file.
-
-        Returns
-        -------
-        dict
-            Name to values, SI: ``(B, 1)`` if they are the same for all rows (of those the product is defined for), else
-            ``(B, N)``, or ``(B, n)`` for a product that is defined for n of the rows.
-        """
-        batch, _ = self._batch(theta)
-        found = named_in_pieces(self._derived, batch, self.conditions.n_rows)
-        for name in self.spec.derived:
-            # the same in all rows it is defined for, such as those of one state of skin
-            if name in found and (found[name] == found[name][:, :1]).all():
-                found[name] = np.ascontiguousarray(found[name][:, :1])
-        return found
-
-    def explain(self, theta: ArrayLike, row: int | None = None) -> list[str]:
-        """Sentences on why predictions at ``theta`` are missing or doubtful, at all rows or one; empty if there is nothing."""
-        batch, _ = self._batch(theta)
-        if self.forward.explain is None:
-            return []
-        inputs, tables = self.inputs(batch), self.tables
-        if row is not None:
-            inputs = {n: v[:, [row]] if v.shape[1] > 1 else v for n, v in inputs.items()}
-            tables = tables.at_row(row)
-        with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-            return self.forward.explain(inputs, tables)
-
-    def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
-        """Where predictions lie at the edge of what the theory is good for, by flag, each ``(B, N)``."""
-        batch, _ = self._batch(theta)
-        raised = self.model.flags
-        if raised is None:
-            return {}
-
-        def piece(part: FloatArray) -> dict[str, NDArray[np.bool_]]:
-            with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-                found = raised(self.inputs(part), self.tables)
-            shape = (len(part), self.conditions.n_rows)
-            return {name: np.array(np.broadcast_to(value, shape)) for name, value in found.items()}
-
-        return named_in_pieces(piece, batch, self.conditions.n_rows)
-
-    @property
-    def profiles(self) -> tuple[Profile, ...]:
-        """Curves that the forward model offers for the inputs of this problem."""
-        columns = set(self.conditions.values)
-        given = {entry.name for entry in self.plan} | columns
-        return tuple(
-            profile
-            for profile in self.model.profiles
-            if given.issuperset(profile.needs) and columns.isdisjoint(profile.uniform)
-        )
-
-    def profile(self, profile: Profile, theta: FloatArray, row: int = 0) -> tuple[FloatArray, FloatArray]:
-        """A curve of the forward model at the conditions of one row: abscissa ``(K,)`` and ordinate ``(B, K)``."""
-        shape = self.conditions.n_rows
-        inputs = {
-            name: np.ascontiguousarray(np.broadcast_to(value, (value.shape[0], shape))[:, row])
-            for name, value in self.inputs(theta).items()
-        }
-        tables = self.tables.at_row(row)
-        with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-            grid = profile.grid(inputs, tables)
-            ordinate = profile.evaluate(inputs, tables, grid)
-        return grid, np.array(np.broadcast_to(ordinate, (len(theta), len(grid))))
-
-    def inputs(self, theta: FloatArray, conditions: Conditions | None = None) -> dict[str, FloatArray]:
-        """All inputs of the forward model and the noise by name, each ``(B or 1, N or 1)``."""
         rows = conditions or self.conditions
         plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows, self.tied)
         same, varying = self._parted if conditions is None else _parted(plan, rows)
@@ -249,29 +196,6 @@ class BoundModel:
     def deduplicated(self) -> DistinctRows | None:
         """Rows of the data that the forward model need not tell apart; None if all differ."""
         return distinct_rows(self.plan, self.conditions, self.tables, self.input_spread)
-
-    def evaluate(
-        self,
-        inputs: Mapping[str, FloatArray],
-        tables: Tables | None = None,
-        deduplicated: DistinctRows | None = None,
-    ) -> dict[str, FloatArray]:
-        """The forward model with discrepancy factors and covariates on observables; shapes as the forward model gives them.
-
-        Rows that are ``alike`` are evaluated once.
-        """
-        tables = self.tables if tables is None else tables
-        with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-            if deduplicated is None:
-                predicted = dict(self.model.evaluate(inputs, tables))
-            else:
-                distinct = self.model.evaluate(deduplicated.of_inputs(inputs), deduplicated.of_tables(tables))
-                predicted = {name: deduplicated.at_rows(values) for name, values in distinct.items()}
-        for name in self.spec.observables:
-            for key in ("discrepancy_factor", f"discrepancy_factor[{name}]", factor_key(name)):
-                if key in inputs:
-                    predicted[name] = predicted[name] * inputs[key]
-        return predicted
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 
@@ -286,21 +210,6 @@ class BoundModel:
 
     def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
         return as_batch(theta, self.names)
-
-    def _derived(self, theta: FloatArray) -> dict[str, FloatArray]:
-        inputs = self.inputs(theta)
-        with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-            quantities = dict(self.model.derived(inputs, self.tables))
-            known = inputs | quantities
-            for name, block in self.spec.derived.items():
-                product = np.ones((1, 1))
-                for factor, power in block.product.items():
-                    product = product * np.asarray(known[factor]) ** power
-                chosen = self.conditions.matching(block.rows)
-                if not chosen.any():  # data of the user's own without such rows
-                    continue
-                quantities[name] = product[:, chosen] if product.shape[-1] > 1 else product
-        return {name: without_underflow(np.atleast_2d(value)) for name, value in quantities.items()}
 
 
 def _parted(plan: tuple[InputPlan, ...], rows: Conditions) -> tuple[dict[str, FloatArray], list[InputPlan]]:

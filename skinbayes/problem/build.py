@@ -12,6 +12,7 @@ import numpy as np
 from skinbayes.files.dataset import Dataset, as_dataset
 from skinbayes.files.locate import shipped_names
 from skinbayes.files.modelfile import read_model
+from skinbayes.files.noise_block import unusable_noise_families
 from skinbayes.files.toml_text import toml_text
 from skinbayes.files.written import written_parameter, written_value
 from skinbayes.forward import ForwardModel, forward_model
@@ -91,6 +92,7 @@ def build_problem(
     >>> problem.names, problem.dimension
     (('typical_friction_coefficient', 'noise_scale'), 2)
     """
+    unusable_noise_families()  # makes those that can be used known
     model = forward_model(forward) if isinstance(forward, str) else forward
     observables = _observables(model, observable)
     several = not (observable is None or isinstance(observable, str))

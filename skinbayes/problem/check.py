@@ -13,8 +13,8 @@ from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
+from skinbayes.phrases import row_count
 from skinbayes.problem.failures import explained
-from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
 from skinbayes.problem.rows import data_notes
@@ -112,11 +112,8 @@ def _setup(problem: StatisticalModel) -> tuple[str, ...]:
     ]
     if problem.dataset is not None:
         rows = problem.conditions.n_rows
-        said.append(
-            f"{rows} {'row' if rows == 1 else 'rows'} of {problem.dataset.shown}: "
-            + "; ".join(f"{o.name}, noise {o.noise.name}" for o in problem.observations)
-            + "."
-        )
+        observed = "; ".join(f"{o.name}, noise {o.noise.name}" for o in problem.observations)
+        said.append(f"{row_count(rows)} of {problem.dataset.shown}: {observed}.")
         said += data_notes(problem)
         if free > rows:
             said.append(
@@ -133,16 +130,11 @@ def _setup(problem: StatisticalModel) -> tuple[str, ...]:
 
 def _priors(problem: StatisticalModel) -> tuple[str, ...]:
     said = []
-    for parameter in problem.free:
-        prior = parameter.prior
-        if prior is None:
-            continue
-        low, high = prior.interval(0.9)
-        ends = [format_quantity(end, parameter.unit, 3, parameter.prior_text) for end in (low, high)]
-        line = f"{parameter.label}: {parameter.prior_text}; 90 % between {' and '.join(ends)}."
-        if not parameter.source:
-            line += " No source is given."
-        said.append(line)
+    for p in problem.free:
+        interval = p.prior.interval(0.9) if p.prior else ()
+        ends = " and ".join(format_quantity(end, p.unit, 3, p.prior_text) for end in interval)
+        source = "" if p.source else " No source is given."
+        said.append(f"{p.label}: {p.prior_text}; 90 % between {ends}.{source}")
     said += [f"{p.label} {p.prior_text}, and is not free." for p in problem.tied]
     return tuple(said)
 
@@ -153,8 +145,7 @@ def _predictions(
     """Sentences about finite predictions, which of the draws have them, and which data are predicted > 0 by all of those."""
     finite, positive = np.ones(len(draws), dtype=bool), np.ones(0, dtype=bool)
     impossible = 0
-    likelihood = Likelihood(problem)
-    step = max(1, PIECE // (likelihood.size if problem.observations else problem.conditions.n_rows))
+    step = max(1, PIECE // (problem.likelihood.size if problem.observations else problem.conditions.n_rows))
     for start in range(0, len(draws), step):  # nothing is kept but what the sentences need
         predicted = problem.predict(draws[start : start + step])
         names = problem.observables if problem.observations else tuple(predicted)
@@ -164,7 +155,7 @@ def _predictions(
             above = [(predicted[name][found] > 0).all(axis=0) for name in problem.observables]
             positive = np.concatenate(above) & (positive if start else True)
             with np.errstate(all="ignore"):
-                density = likelihood.given(draws[start : start + step], predicted)[found]
+                density = problem.likelihood.given(draws[start : start + step], predicted)[found]
             impossible += int((~np.isfinite(density)).sum())
     if not finite.any():
         _, missing = predicted_everywhere(problem, draws[:FEWEST_DRAWS])

@@ -32,14 +32,7 @@ def covariate_columns(covariates: Sequence[CovariateSpec], dataset: Dataset) -> 
                 f"{dataset.path}: no column '{column} [..]', which the covariate '{covariate.name}' needs; "
                 f"columns: {', '.join(dataset.columns)}"
             )
-        values = np.asarray(dataset.columns[column], dtype=float)
-        if not (values > 0).all():
-            row = int(np.flatnonzero(~(values > 0))[0])
-            raise InputError(
-                f"{dataset.path}: row {row + 1}, {column}: found {values[row]:g}; expected a value > 0, as the covariate "
-                f"'{covariate.name}' enters as a power"
-            )
-        found[column] = values
+        found[column] = dataset.positive(column, f"the covariate '{covariate.name}' enters as a power")
     return found
 
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.problem.bound import BoundModel
 from skinbayes.problem.observations import NOISE_WORDS, Observation, propagated_spread
 from skinbayes.problem.pieces import in_pieces
+from skinbayes.problem.predicting import PredictingModel
 from skinbayes.statistics.groups import CrossedGroups
 
 
@@ -25,7 +25,7 @@ class Likelihood:
     are normal and integrated out.
     """
 
-    problem: BoundModel
+    problem: PredictingModel
 
     def pointwise(self, theta: FloatArray) -> FloatArray:
         """ln p of each datum, shape ``(B, M)``: given θ, and given all other data where groups share effects."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.problem.bound import BoundModel
+from skinbayes.problem.predicting import PredictingModel
 from skinbayes.vocabulary import QUANTITIES
 
 _NAMED = 5  # rows that a message lists
@@ -18,7 +18,7 @@ def has_value(name: str, values: FloatArray) -> NDArray[np.bool_]:
     return np.isfinite(values) | (infinite & (values == np.inf))
 
 
-def predicted_everywhere(problem: BoundModel, draws: FloatArray) -> tuple[NDArray[np.bool_], str]:
+def predicted_everywhere(problem: PredictingModel, draws: FloatArray) -> tuple[NDArray[np.bool_], str]:
     """Which of the parameter vectors have a value at all rows, for what the data hold, or for everything without data.
 
     Returns

@@ -20,10 +20,19 @@ class Problem(StatisticalModel):
     are those of :class:`~skinbayes.problem.bound.BoundModel`; densities and draws are those of
     :class:`~skinbayes.problem.statistical_model.StatisticalModel`.
 
+    Attributes
+    ----------
+    spec, forward, free, fixed, conditions, dataset, observations, input_spread, groups, tables, flow_curves, settings, tied : see
+        :class:`~skinbayes.problem.bound.BoundModel`
+
     Examples
     --------
+    Examples of methods go on from this one.
+
+    >>> import numpy as np
     >>> import skinbayes as sb
-    >>> sb.load_problem("finger-null").names
+    >>> problem = sb.load_problem("finger-null")
+    >>> problem.names
     ('typical_friction_coefficient', 'noise_scale', 'group_scale[person]', 'group_scale[liquid]')
     """
 
@@ -31,11 +40,33 @@ class Problem(StatisticalModel):
         return summary(self)
 
     def check(self) -> CheckReport:
-        """Look at the problem before sampling: priors, finite predictions, and what the data can tell apart, in words."""
+        """Look at the problem before sampling.
+
+        Returns
+        -------
+        CheckReport
+            Priors, finite predictions, and what the data can tell apart; ``sentences()`` says it in words.
+
+        Examples
+        --------
+        >>> problem.check().to_dict()["model"]
+        'finger-null'
+        """
         return check_problem(self)
 
     def target(self) -> PosteriorTarget:
-        """The posterior as samplers see it: on the whole real space, with Jacobian."""
+        """The posterior as samplers see it: on the whole real space, with Jacobian.
+
+        Returns
+        -------
+        PosteriorTarget
+            Log-density, prior transform and likelihood of ``(B, D)``.
+
+        Examples
+        --------
+        >>> problem.target().log_density(np.zeros((2, 4))).shape
+        (2,)
+        """
         return PosteriorTarget(self)
 
     def to_toml(self, path: str | Path | None = None) -> str:
@@ -55,6 +86,11 @@ class Problem(StatisticalModel):
         ------
         InputError
             A file of that name is there already, or a prior that no model file can state.
+
+        Examples
+        --------
+        >>> "[noise]" in problem.to_toml()
+        True
         """
         if path is None:
             file = Path(f"{self.name}.toml")

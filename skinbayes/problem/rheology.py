@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Dataset, find_dataset, load_dataset
+from skinbayes.files.dataset import Dataset, load_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.forward import FlowCurve, ForwardModel
 from skinbayes.problem.inputs import Conditions

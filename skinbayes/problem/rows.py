@@ -8,7 +8,8 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Data, Dataset, as_dataset, find_dataset
+from skinbayes.files.dataset import Data, Dataset, as_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import RESERVED_NAMES
 from skinbayes.forward import ForwardModel
@@ -142,7 +143,7 @@ def data_notes(problem: BoundModel) -> list[str]:
     said = []
     if dataset.dropped:
         count = len(dataset.dropped)
-        word = ("row" if dataset.in_memory else "line") + ("s" if count > 1 else "")
+        word = dataset.row_word + ("s" if count > 1 else "")
         listed = ", ".join(str(line) for line in dataset.dropped[:MOST_LISTED])
         more = f" and {count - MOST_LISTED} more" if count > MOST_LISTED else ""
         said.append(
@@ -189,11 +190,8 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
     noise = noise_family(spec.noise[name])
     spread = np.zeros_like(values)
     spread_column = _spread_column(dataset, name)
-    if spread_column and spec.spread is None:
-        raise InputError(
-            f"{spec.path}: the data have a column '{spread_column}'; say in [data] whether it enters the likelihood: "
-            'spread = "use" or spread = "ignore"'
-        )
+    if spread_column:
+        _check_said(spec, "spread", spread_column)
     try:
         noise.check_observed(values)
     except InputError as error:
@@ -206,6 +204,15 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
             )
         spread = np.asarray(dataset.columns[spread_column], dtype=float)
     return Observation(name, values, spread, noise, several)
+
+
+def _check_said(spec: ModelSpec, key: str, column: str) -> None:
+    """Refuse a spread of the data of which the model file does not say whether it is used."""
+    if getattr(spec, key) is None:
+        raise InputError(
+            f"{spec.path}: the data have a column '{column}'; say in [data] whether it enters the likelihood: "
+            f'{key} = "use" or {key} = "ignore"'
+        )
 
 
 def _spread_column(dataset: Dataset, name: str) -> str:
@@ -230,9 +237,8 @@ def _spread_column(dataset: Dataset, name: str) -> str:
         if (apart := np.flatnonzero(np.abs(ratio - 1) > ROUNDING)).size:
             row = int(apart[0])
             raise InputError(
-                f"{dataset.path}: {'line' if dataset.lines and not dataset.in_memory else 'row'} "
-                f"{dataset.lines[row] if dataset.lines else row + 1}, {error}: found {ratio[row]:.3g} times "
-                f"{deviation}/sqrt(n); expected the same within {ROUNDING:.0%}"
+                f"{dataset.place(row)}, {error}: found {ratio[row]:.3g} times {deviation}/sqrt(n); expected the same within "
+                f"{ROUNDING:.0%}"
             )
     return error
 
@@ -249,25 +255,13 @@ def _ways_out(spec: ModelSpec, dataset: Dataset, key: str, column: str) -> str:
 def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -> dict[str, FloatArray]:
     """Standard deviation over value of the inputs that have a spread column, if it is to be used."""
     found = {}
-    for name, values in rows.values.items():
-        column = _spread_column(dataset, name)
-        if not column:
-            continue
-        if spec.input_spread is None:
-            raise InputError(
-                f"{spec.path}: the data have a column '{column}'; say in [data] whether it enters the likelihood: "
-                'input_spread = "use" or input_spread = "ignore"'
-            )
+    columns = {name: column for name in rows.values if (column := _spread_column(dataset, name))}
+    for name, column in columns.items():
+        _check_said(spec, "input_spread", column)
         spread = np.asarray(dataset.columns[column], dtype=float)
         if spec.input_spread == "use" and spread.any():
-            if not (values > 0).all():
-                row = int(np.flatnonzero(~(values > 0))[0])
-                raise InputError(
-                    f"{dataset.path}: row {row + 1}, {name}: found {values[row]:g}; expected a value > 0, as its spread is "
-                    "taken relative to it"
-                )
-            found[name] = spread / values
-    if spec.input_spread == "use" and not any(_spread_column(dataset, name) for name in rows.values):
+            found[name] = spread / dataset.positive(name, "its spread is taken relative to it")
+    if spec.input_spread == "use" and not columns:
         raise InputError(
             f'{spec.path}: data.input_spread = "use", but no input among the columns of {dataset.path} has a column '
             f"'<input>{STANDARD_DEVIATION_SUFFIX}'. {_ways_out(spec, dataset, 'input_spread', 'one')}"

@@ -62,11 +62,17 @@ def apply_settings(
 def _replace(
     parameters: list[ParameterSpec], name: str, level: str, value: float, key: str, text: str
 ) -> list[ParameterSpec]:
-    new = ParameterSpec(
-        name, QUANTITIES[name].unit, None, None, value, None, {"fixed": text}, "set by the user"
-    )
+    new = ParameterSpec.of_value(name, value, "set by the user", {"fixed": text})
     if not level:
-        return [*(p for p in parameters if p.name != name), new]
+        # what the file ties to one of its levels follows the value of all of them
+        return [
+            *(_tied_to_whole(p, name) if p.same_as else p for p in parameters if p.name != name),
+            new,
+        ]
+    if whole := next((p for p in parameters if p.name == name and p.same_as and p.level is None), None):
+        raise InputError(
+            f"--set {key}: the model file ties all of {name} to {whole.same_as}; set {name} without a level, or {whole.same_as}"
+        )
     levels = [p.level for p in parameters if p.name == name]
     if level not in levels:
         found = ", ".join(str(item) for item in levels if item) or "no levels"
@@ -77,6 +83,11 @@ def _replace(
         else p
         for p in parameters
     ]
+
+
+def _tied_to_whole(parameter: ParameterSpec, name: str) -> ParameterSpec:
+    tied = str(parameter.same_as).partition("[")[0] == name
+    return replace(parameter, same_as=name) if tied else parameter
 
 
 def _resolve_alternatives(

@@ -10,18 +10,30 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.problem.batches import unbatch
-from skinbayes.problem.bound import BoundModel
 from skinbayes.problem.failures import impossible
 from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.likelihood import Likelihood
+from skinbayes.problem.predicting import PredictingModel
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 
 MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
 
 
 @dataclass(frozen=True)
-class StatisticalModel(BoundModel):
-    """A bound model with the densities of its parameters and of its data."""
+class StatisticalModel(PredictingModel):
+    """A bound model with the densities of its parameters and of its data.
+
+    Examples
+    --------
+    Examples of methods go on from this one.
+
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-null")
+    >>> middle = problem.prior_medians()
+    >>> rng = np.random.default_rng(1)
+    >>> problem.dimension, problem.conditions.n_rows
+    (4, 165)
+    """
 
     @cached_property
     def fingerprint(self) -> str:
@@ -39,45 +51,136 @@ class StatisticalModel(BoundModel):
     # -- densities ---------------------------------------------------------------------------------------------------
 
     def log_prior(self, theta: ArrayLike) -> FloatArray:
-        """Log prior density per SI unit of each parameter; ``-inf`` outside the support. Shape ``(B,)`` or scalar."""
+        """Log prior density, per SI unit of each parameter.
+
+        Parameters
+        ----------
+        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B,)`` or scalar; −inf outside the support.
+
+        Raises
+        ------
+        InputError
+            ``theta`` has the wrong number of parameters.
+
+        Examples
+        --------
+        >>> bool(problem.log_prior(middle) > problem.log_prior(3.0 * middle))
+        True
+        """
         batch, single = self._batch(theta)
         return unbatch(self._prior(batch), single)
 
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
-        """Log-likelihood of the data, shape ``(B,)``; ``pointwise=True`` gives ``(B, M)``, one for each datum.
+        """Log-likelihood of the data.
 
         With group effects the pointwise terms are ln p(datum | all others, θ), which is what leaving one out needs; they do
         not sum to the whole. NaN and +inf from the forward model become −inf.
+
+        Parameters
+        ----------
+        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
+        pointwise : give one number for each datum
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B,)`` or scalar; pointwise ``(B, M)`` or ``(M,)``.
 
         Raises
         ------
         InputError
             The model has no data, or ``theta`` has the wrong number of parameters.
+
+        Examples
+        --------
+        >>> problem.log_likelihood(middle).shape, problem.log_likelihood(middle, pointwise=True).shape
+        ((), (165,))
         """
         batch, single = self._batch(theta)
-        value = self._likelihood.pointwise(batch) if pointwise else self._likelihood.total(batch)
+        value = self.likelihood.pointwise(batch) if pointwise else self.likelihood.total(batch)
         return unbatch(impossible(value), single)
 
     def log_likelihood_left_out(self, theta: ArrayLike, column: str) -> FloatArray:
-        """ln p(all data of one level | all other data, θ) for each level of a grouping column, shape ``(B, levels)``.
+        """ln p(all data of one level | all other data, θ) for each level of a grouping column.
 
-        What leaving out one person, or one liquid, needs. Levels in the order of their first row.
+        What leaving out one person, or one liquid, needs.
+
+        Parameters
+        ----------
+        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
+        column : of labels of the rows
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, levels)`` or ``(levels,)``, levels in the order of their first row.
 
         Raises
         ------
         InputError
             The model has no data, several observables, or no such column.
+
+        Examples
+        --------
+        >>> problem.log_likelihood_left_out(middle, "person").shape
+        (11,)
         """
         batch, single = self._batch(theta)
-        return unbatch(impossible(self._likelihood.left_out(batch, column)), single)
+        return unbatch(impossible(self.likelihood.left_out(batch, column)), single)
 
     def log_posterior(self, theta: ArrayLike) -> FloatArray:
-        """Log of prior times likelihood (not normalised), shape ``(B,)`` or scalar."""
+        """Log of prior times likelihood, not normalised.
+
+        Parameters
+        ----------
+        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B,)`` or scalar.
+
+        Raises
+        ------
+        InputError
+            The model has no data, or ``theta`` has the wrong number of parameters.
+
+        Examples
+        --------
+        >>> found = problem.log_posterior(middle)
+        >>> bool(np.isclose(found, problem.log_prior(middle) + problem.log_likelihood(middle)))
+        True
+        """
         batch, single = self._batch(theta)
         return unbatch(impossible(self._posterior(batch)), single)
 
     def prior_transform(self, u: ArrayLike) -> FloatArray:
-        """Map the unit hypercube to parameters by the prior quantiles, as nested samplers need it; shape as ``u``."""
+        """Parameters at quantiles of their priors, as nested samplers need them.
+
+        Parameters
+        ----------
+        u : ``(D,)`` or ``(B, D)``, between 0 and 1
+
+        Returns
+        -------
+        ndarray
+            Shape of ``u``, SI.
+
+        Raises
+        ------
+        InputError
+            ``u`` has the wrong number of parameters.
+
+        Examples
+        --------
+        >>> np.array_equal(problem.prior_transform(np.full(4, 0.5)), middle)
+        True
+        """
         batch, single = self._batch(u)
         columns = [
             parameter.prior.quantile(batch[:, i]) for i, parameter in enumerate(self.free) if parameter.prior
@@ -85,48 +188,153 @@ class StatisticalModel(BoundModel):
         return unbatch(np.stack(columns, axis=-1), single)
 
     def prior_density(self) -> LogDensity:
-        """The prior as a density: it gains a Jacobian when coordinates change."""
+        """The prior as a density: it gains a Jacobian when coordinates change.
+
+        Returns
+        -------
+        LogDensity
+            A function of ``(B, D)``, SI, that returns ``(B,)``.
+
+        Examples
+        --------
+        >>> problem.prior_density()(middle[np.newaxis]).shape
+        (1,)
+        """
         return self._prior
 
     def data_likelihood(self) -> LogLikelihood:
-        """The likelihood: it stays as it is when coordinates change; NaN where the forward model has no answer."""
-        return LogLikelihood(self._likelihood.total)
+        """The likelihood: it stays as it is when coordinates change.
+
+        Returns
+        -------
+        LogLikelihood
+            A function of ``(B, D)``, SI, that returns ``(B,)``; NaN where the forward model has no answer.
+
+        Examples
+        --------
+        >>> problem.data_likelihood()(middle[np.newaxis]).shape
+        (1,)
+        """
+        return LogLikelihood(self.likelihood.total)
 
     # -- prior draws, checks, sampling -------------------------------------------------------------------------------
 
     def draw_prior(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Draw parameter vectors from the prior, shape ``(count, D)``, SI."""
+        """Draw parameter vectors from the prior.
+
+        Parameters
+        ----------
+        rng : source of randomness
+        count : how many
+
+        Returns
+        -------
+        ndarray
+            Shape ``(count, D)``, SI.
+
+        Examples
+        --------
+        >>> problem.draw_prior(rng, 3).shape
+        (3, 4)
+        """
         return np.stack([p.prior.draw(rng, count) for p in self.free if p.prior], axis=-1)
 
     def prior_medians(self) -> FloatArray:
-        """Prior median of each free parameter, shape ``(D,)``, SI."""
+        """Prior median of each free parameter.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(D,)``, SI.
+
+        Examples
+        --------
+        >>> problem.prior_medians().shape
+        (4,)
+        """
         return np.array([p.prior.median for p in self.free if p.prior], dtype=float)
 
     def simulate(
         self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
     ) -> FloatArray:
-        """Draw data of the size of the observed ones for each parameter vector, noise included; ``(M,)`` or ``(B, M)``.
+        """Draw data of the size of the observed ones for each parameter vector, noise included.
 
-        Group effects are drawn anew, for other people and liquids, unless ``effects`` ``(B, G)`` are given.
+        Group effects are drawn anew, for other people and liquids, unless they are given.
+
+        Parameters
+        ----------
+        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
+        rng : source of randomness
+        effects : of all levels, shape ``(B, G)``, from :meth:`draw_effects`
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, M)`` or ``(M,)``, SI.
+
+        Raises
+        ------
+        InputError
+            The model has no data, or ``theta`` has the wrong number of parameters.
+
+        Examples
+        --------
+        >>> problem.simulate(middle, rng).shape
+        (165,)
         """
         batch, single = self._batch(theta)
-        return unbatch(self._likelihood.draw(batch, rng, effects), single)
+        return unbatch(self.likelihood.draw(batch, rng, effects), single)
 
     def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
-        """Draw the effects of all levels of all groups given parameters and data, shape ``(B, G)``.
+        """Draw the effects of all levels of all groups given parameters and data.
 
-        Raises :class:`InputError` if the model has no groups.
+        Parameters
+        ----------
+        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
+        rng : source of randomness
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, G)``: in the unit of the observable, or of its ln if the noise is logarithmic.
+
+        Raises
+        ------
+        InputError
+            The model has no groups or no data.
+
+        Examples
+        --------
+        >>> problem.draw_effects(middle, rng).shape
+        (1, 26)
         """
         batch, _ = self._batch(theta)
-        return self._likelihood.draw_effects(batch, rng)
+        return self.likelihood.draw_effects(batch, rng)
 
     def noise_width(self, theta: FloatArray) -> FloatArray:
-        """Width of the noise of each datum at one parameter vector ``(D,)``, shape ``(M,)``.
+        """Width of the noise of each datum at one parameter vector. Group effects are not in it.
 
-        In the unit of the observable; for logarithmic noise families the width of its ln. Group effects are not in it.
+        Parameters
+        ----------
+        theta : one parameter vector ``(D,)``, SI
+
+        Returns
+        -------
+        ndarray
+            Shape ``(M,)``: in the unit of the observable, or of its ln if the noise is logarithmic.
+
+        Raises
+        ------
+        InputError
+            The model has no data, or ``theta`` has the wrong number of parameters.
+
+        Examples
+        --------
+        >>> bool((problem.noise_width(middle) == middle[1]).all())
+        True
         """
         batch, _ = self._batch(theta)
-        return self._likelihood.width(batch)[0]
+        return self.likelihood.width(batch)[0]
 
     def independent_scatter(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
         """Changes of what scatters as numbers that scatter independently, with width 1.
@@ -141,8 +349,13 @@ class StatisticalModel(BoundModel):
         ndarray
             Shape ``(B, M + G)`` with G effects of groups: the inner products are those of the changes with the inverse of the
             covariance of the data between them.
+
+        Examples
+        --------
+        >>> problem.independent_scatter(middle, np.ones((1, 165))).shape
+        (1, 191)
         """
-        return self._likelihood.independent(theta, changes)
+        return self.likelihood.independent(theta, changes)
 
     @property
     def noise_is_logarithmic(self) -> NDArray[np.bool_]:
@@ -163,5 +376,6 @@ class StatisticalModel(BoundModel):
         return self._prior.times(self.data_likelihood())
 
     @cached_property
-    def _likelihood(self) -> Likelihood:
+    def likelihood(self) -> Likelihood:
+        """What the densities and draws of data are made of, for batches ``(B, D)`` without checks of their shape."""
         return Likelihood(self)

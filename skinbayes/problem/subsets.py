@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import compress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,30 +61,18 @@ def without_level(problem: Problem, column: str, level: str) -> Problem:
             f"{problem.spec.path}: {column} '{level}' cannot be left out: "
             + ("there is no other" if not others else f"expected one of {', '.join(others)}")
         )
-    rows = _kept_rows(problem.conditions, keep)
-    dataset = problem.dataset.select({column: others})
-    observations = tuple(
-        replace(o, values=o.values[keep], spread=o.spread[keep]) for o in problem.observations
-    )
-    curves = problem.tables.flow_curves
-    tables = problem.tables
-    if curves is not None:
-        tables = replace(tables, flow_curves=tuple(c for c, kept in zip(curves, keep, strict=True) if kept))
     groups = problem.groups
-    if groups is not None:
-        groups = CrossedGroups.of_labels({name: rows.labels[name] for name in groups.columns})
-    reduced = replace(
+    kept_labels = {name: values[keep] for name, values in labels.items()}
+    return _of_rows(
         problem,
-        conditions=rows,
-        dataset=dataset,
-        observations=observations,
+        keep,
+        dataset=problem.dataset.select({column: others}),
+        observations=tuple(
+            replace(o, values=o.values[keep], spread=o.spread[keep]) for o in problem.observations
+        ),
         input_spread=_kept(problem.input_spread, keep),
-        groups=groups,
-        tables=tables,
+        groups=groups and CrossedGroups.of_labels({name: kept_labels[name] for name in groups.columns}),
     )
-    # prepared for the ranges of all rows, so also for these
-    reduced.__dict__["model"] = problem.model
-    return reduced
 
 
 def one_row_of_each_level(problem: Problem) -> Problem:
@@ -102,28 +90,23 @@ def one_row_of_each_level(problem: Problem) -> Problem:
     >>> one_row_of_each_level(load_problem("forearm-glass")).conditions.n_rows
     2
     """
-    rows, tables = problem.conditions, problem.tables
+    rows = problem.conditions
     _, first = np.unique(kinds(list(rows.labels.values()), rows.n_rows), return_index=True)
     keep = np.zeros(rows.n_rows, dtype=bool)
     keep[first] = True
+    return _of_rows(problem, keep, observations=(), input_spread={}, groups=None)
+
+
+def _of_rows(problem: Problem, keep: NDArray[np.bool_], **changes: Any) -> Problem:
+    """The problem at some of its rows."""
+    rows, tables = problem.conditions, problem.tables
     if tables.flow_curves is not None:
         tables = replace(tables, flow_curves=tuple(compress(tables.flow_curves, keep)))
-    rows = _kept_rows(rows, keep)
-    reduced = replace(
-        problem,
-        conditions=rows,
-        observations=(),
-        input_spread={},
-        groups=None,
-        tables=tables,
-    )
-    reduced.__dict__["model"] = problem.model
-    return reduced
-
-
-def _kept_rows(rows: Conditions, keep: NDArray[np.bool_]) -> Conditions:
     labels = {name: values[keep] for name, values in rows.labels.items()}
-    return Conditions(_kept(rows.values, keep), labels, int(keep.sum()), _kept(rows.covariates, keep))
+    kept = Conditions(_kept(rows.values, keep), labels, int(keep.sum()), _kept(rows.covariates, keep))
+    reduced = replace(problem, conditions=kept, tables=tables, **changes)
+    reduced.__dict__["model"] = problem.model  # prepared for the ranges of all rows, so also for these
+    return reduced
 
 
 def _kept(columns: Mapping[str, FloatArray], keep: NDArray[np.bool_]) -> dict[str, FloatArray]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from textwrap import shorten
 
+from skinbayes.phrases import row_count
 from skinbayes.problem.bound import BoundModel
 
 LONGEST, MOST_NAMES = 100, 12
@@ -16,9 +17,8 @@ def summary(problem: BoundModel) -> str:
     if problem.dataset is None:
         said.append("data: none")
     else:
-        rows = problem.conditions.n_rows
         explained = ", ".join(f"{o.name} (noise {o.noise.name})" for o in problem.observations)
-        said.append(f"data: {rows} {'row' if rows == 1 else 'rows'} of {problem.dataset.shown}: {explained}")
+        said.append(f"data: {row_count(problem.conditions.n_rows)} of {problem.dataset.shown}: {explained}")
     said.append(f"forward model: {problem.forward.name}")
     said += _listed("free", (f"{p.label}: {p.prior_text}" for p in problem.free))
     said += _listed("fixed", (f"{p.label}: {p.prior_text}" for p in problem.fixed))

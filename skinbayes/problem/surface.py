@@ -12,7 +12,6 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS
 from skinbayes.roughness import TabulatedSpectrum, named_surface
-from skinbayes.vocabulary import QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -54,13 +53,6 @@ def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Su
         named = named_surface(name)
     except InputError as error:
         raise InputError(f"{spec.path}: surface.name: {error}") from None
-    return Surface(
-        name=name,
-        parameters=tuple(
-            ParameterSpec(
-                key, QUANTITIES[key].unit, None, None, float(np.asarray(getattr(named, key))), None,
-                source=f"surface {name}",
-            )
-            for key in ROUGHNESS_INPUTS
-        )
-    )  # fmt: skip
+    values = {key: float(np.asarray(getattr(named, key))) for key in ROUGHNESS_INPUTS}
+    parameters = (ParameterSpec.of_value(key, value, f"surface {name}") for key, value in values.items())
+    return Surface(name=name, parameters=tuple(parameters))

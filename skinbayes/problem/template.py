@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import find_dataset
+from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import label_column
 from skinbayes.files.table import read_table
@@ -91,18 +92,11 @@ def data_template(name: str | Path) -> DataTemplate:
         TemplateColumn(label, None, LABELS.get(label, "label of the row"), why)
         for label, why in _labels(spec).items()
     ]
-    inputs: list[TemplateColumn] = []
-    for quantity, why in _inputs(spec, forward, notes).items():
-        inputs.append(_column(quantity, why))
-        if spec.input_spread == "use":
-            inputs.append(_spread(quantity, "the model uses the spread of its inputs"))
-    observables: list[TemplateColumn] = []
-    for quantity in spec.observables or forward.observables[:1]:
-        observables.append(
-            _column(quantity, "what the model explains" if spec.observables else "what the model predicts")
-        )
-        if spec.spread == "use":
-            observables.append(_spread(quantity, "the model adds it to its noise"))
+    used = "the model uses the spread of its inputs" if spec.input_spread == "use" else ""
+    inputs = _columns(_inputs(spec, forward, notes), used)
+    added = "the model adds it to its noise" if spec.spread == "use" else ""
+    why = "what the model explains" if spec.observables else "what the model predicts"
+    observables = _columns(dict.fromkeys(spec.observables or forward.observables[:1], why), added)
     if not spec.observables:
         others = ", ".join(forward.observables[1:])
         notes.append(
@@ -114,13 +108,18 @@ def data_template(name: str | Path) -> DataTemplate:
     return DataTemplate(spec.name, (*labels, *inputs, *observables), tuple(notes))
 
 
-def _column(name: str, why: str) -> TemplateColumn:
-    return TemplateColumn(name, QUANTITIES[name].unit, QUANTITIES[name].meaning, why)
-
-
-def _spread(name: str, why: str) -> TemplateColumn:
-    meaning = f"standard deviation of {name} in this row, such as its reading error"
-    return TemplateColumn(name + STANDARD_DEVIATION_SUFFIX, QUANTITIES[name].unit, meaning, why)
+def _columns(reasons: Mapping[str, str], why_spread: str) -> list[TemplateColumn]:
+    """Columns of quantities, each with the reason why; those of their spreads as well if there is a reason for them."""
+    found = []
+    for name, why in reasons.items():
+        unit, meaning = (
+            QUANTITIES[name].unit,
+            f"standard deviation of {name} in this row, such as its reading error",
+        )
+        found.append(TemplateColumn(name, unit, QUANTITIES[name].meaning, why))
+        if why_spread:
+            found.append(TemplateColumn(name + STANDARD_DEVIATION_SUFFIX, unit, meaning, why_spread))
+    return found
 
 
 def _labels(spec: ModelSpec) -> dict[str, str]:

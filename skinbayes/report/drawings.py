@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from skinbayes.phrases import plural
 from skinbayes.plot import (
     plot_corner,
@@ -21,10 +19,9 @@ from skinbayes.plot import (
     plot_residuals,
     plot_trace,
 )
-from skinbayes.plot.data import varying
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.profile import profile_abscissas
-from skinbayes.plot.rows import group_columns, row_abscissa, row_predictions, telling_columns
+from skinbayes.plot.rows import group_columns, row_predictions, telling_columns, varying
 from skinbayes.plot.symbols import spoken_name
 
 if TYPE_CHECKING:
@@ -173,7 +170,7 @@ def _by_level(fit: Fit, problem: Problem) -> Iterator[Drawing]:
     if problem.conditions.n_rows < FEWEST_ROWS or len(observables(fit)) > 1 or not telling_columns(fit):
         return
     effects, predictions = group_columns(fit), row_predictions(fit, problem)
-    for column in telling_columns(fit) if _has_abscissa(fit, problem) else []:
+    for column in telling_columns(fit) if varying(fit) else []:
         one = spoken_name(column)
         own = f" and the effect of this {one}, written above it," if column in effects else ""
         yield Drawing(
@@ -202,7 +199,7 @@ def _by_level(fit: Fit, problem: Problem) -> Iterator[Drawing]:
 
 def _residuals(fit: Fit, problem: Problem) -> Iterator[Drawing]:
     """Residuals against the conditions."""
-    if problem.conditions.n_rows < FEWEST_ROWS or not _has_abscissa(fit, problem):
+    if problem.conditions.n_rows < FEWEST_ROWS or not varying(fit):
         return
     known = ", effects of groups taken off" if group_columns(fit) else ""
     yield Drawing(
@@ -211,7 +208,3 @@ def _residuals(fit: Fit, problem: Problem) -> Iterator[Drawing]:
         f"Dots are rows: observed over predicted{known}. Bars, where there are any, are medians of a sixth of the rows. Where "
         "the model is right, dots lie evenly about the dashed line; a slope or a bend is something it misses.",
     )  # fmt: skip
-
-
-def _has_abscissa(fit: Fit, problem: Problem) -> bool:
-    return row_abscissa(problem, np.median(fit.theta(), axis=0)) is not None

@@ -5,8 +5,7 @@ from __future__ import annotations
 import io
 import re
 from base64 import b64encode
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from skinbayes.plot.style import look
 from skinbayes.report.drawings import Drawing, drawings
@@ -32,72 +31,31 @@ NARROW = "84 mm"
 """Width of the figures for phones, that of a column of a journal."""
 
 
-@dataclass(frozen=True)
-class Image:
-    """One drawing of a figure.
-
-    Attributes
-    ----------
-    kind : media type of the image: vectors, or pixels if there is much to draw
-    data : the image as base64
-    width, height : on the page, pixels
-    """
-
-    kind: str
-    data: str
-    width: int
-    height: int
-
-
-@dataclass(frozen=True)
-class Picture:
-    """One figure of a page.
-
-    Attributes
-    ----------
-    key : identifier on the page
-    heading, alternative, caption : texts
-    wide, narrow : for screens and paper, and for phones
-    large : True if it may be wider than the text
-    """
-
-    key: str
-    heading: str
-    alternative: str
-    caption: str
-    wide: Image
-    narrow: Image
-    large: bool
-
-
-def pictures(fit: Fit) -> dict[str, Picture]:
-    """All figures of a page by key, in its order."""
+def pictures(fit: Fit) -> dict[str, dict[str, Any]]:
+    """All figures of a page by key, in its order: texts of the drawing, images for screens and for phones."""
     return {drawing.key: _picture(fit, drawing) for drawing in drawings(fit)}
 
 
-def _picture(fit: Fit, drawing: Drawing) -> Picture:
-    alternative = drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}"
+def _picture(fit: Fit, drawing: Drawing) -> dict[str, Any]:
     wide = drawing.draw(fit, width=None)
-    return Picture(
-        key=drawing.key,
-        heading=drawing.heading,
-        alternative=alternative,
-        caption=drawing.caption,
-        wide=_image(wide),
-        narrow=_image(drawing.draw(fit, width=NARROW)),
-        large=float(wide.get_size_inches()[0]) > LARGE,
-    )
+    return vars(drawing) | {
+        "alternative": drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}",
+        "wide": _image(wide),
+        "narrow": _image(drawing.draw(fit, width=NARROW)),
+        "large": float(wide.get_size_inches()[0]) > LARGE,  # may be wider than the text
+    }
 
 
-def _image(figure: Figure) -> Image:
+def _image(figure: Figure) -> dict[str, Any]:
+    """Media type (vectors, or pixels if there is much to draw), the image as base64, and its size on the page in pixels."""
     width, height = (float(size) for size in figure.get_size_inches())
     pixels = len(figure.axes) > MOST_VECTOR_PANELS or width > LARGE
-    return Image(
-        kind="image/png" if pixels else "image/svg+xml",
-        data=b64encode(_pixels(figure, width) if pixels else _vectors(figure)).decode("ascii"),
-        width=int(width * PAGE_DENSITY),
-        height=int(height * PAGE_DENSITY),
-    )
+    return {
+        "kind": "image/png" if pixels else "image/svg+xml",
+        "data": b64encode(_pixels(figure, width) if pixels else _vectors(figure)).decode("ascii"),
+        "width": int(width * PAGE_DENSITY),
+        "height": int(height * PAGE_DENSITY),
+    }
 
 
 def _pixels(figure: Figure, width: float) -> bytes:

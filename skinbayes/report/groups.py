@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.phrases import and_list, plural
-from skinbayes.plot.numbers import interval, number, percent, quantity
+from skinbayes.phrases import and_list, number, percent, plural
+from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.rows import effect_draws, group_columns
 from skinbayes.statistics.noise_families import noise_family
@@ -87,6 +87,7 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
     logarithmic = noise_family(str(fit.provenance["noise"][observables(fit)[0]])).logarithmic
     found = []
     for column in columns:
+        label = f"group_scale[{column}]"
         levels, draws = effect_draws(fit, column)
         over_noise = fraction = None
         if noise is not None:
@@ -98,7 +99,7 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
             GroupFinding(
                 column,
                 logarithmic,
-                _scale(fit, column, scales[column]),
+                _triple(scales[column]) if label not in fit.names else _three(fit.quantiles(label)),
                 {level: _triple(draws[:, i]) for i, level in enumerate(levels)},
                 over_noise,
                 fraction,
@@ -214,15 +215,11 @@ def _unit(fit: Fit) -> str:
 
 
 def _triple(draws: FloatArray) -> Triple:
-    low, middle, high = (float(q) for q in np.quantile(draws, [0.05, 0.5, 0.95]))
-    return low, middle, high
+    return _three(np.quantile(draws, [0.05, 0.5, 0.95]))
 
 
-def _scale(fit: Fit, column: str, draws: FloatArray) -> Triple:
-    label = f"group_scale[{column}]"
-    if label not in fit.names:
-        return _triple(draws)
-    low, middle, high = (float(q) for q in fit.quantiles(label))
+def _three(quantiles: FloatArray) -> Triple:
+    low, middle, high = (float(q) for q in quantiles)
     return low, middle, high
 
 

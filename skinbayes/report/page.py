@@ -114,6 +114,7 @@ def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[s
         "convergence": [sentences.with_symbols(fit, sentence) for sentence in quality.convergence(fit)],
         "assumptions": _assumptions(fit, check),
         "fixed": tables.fixed_rows(fit),
+        "some_tied": bool(fit.provenance.get("tied")),
         "data": data_origin(fit),
         "settings": tables.settings(fit),
         "model_text": str(fit.provenance["model_text"]),

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.phrases import and_list, plural, sample_size
-from skinbayes.plot.numbers import fraction, number, percent, quantity
+from skinbayes.phrases import and_list, number, percent, plural, sample_size
+from skinbayes.plot.numbers import fraction, quantity
 from skinbayes.plot.predictive import (
     datum_names,
     observables,

@@ -9,7 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.diagnose import ridges
-from skinbayes.plot.numbers import number, percent
+from skinbayes.phrases import number, percent
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.diagnose.rule import MUCH, SOMETHING, UNCHANGED
-from skinbayes.plot.numbers import fraction, interval, number, percent, quantity
+from skinbayes.phrases import number, percent
+from skinbayes.plot.numbers import fraction, interval, quantity
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.opening import is_scatter
+from skinbayes.report.tables import labels_by_name
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
@@ -91,11 +93,8 @@ def learnt(fit: Fit) -> list[str]:
 
 def learnt_products(fit: Fit) -> list[str]:
     """One entry for each combination that the model file names, also where it differs from row to row."""
-    by_name: dict[str, list[str]] = {}
-    for label in named_products(fit):
-        by_name.setdefault(label.partition("[")[0], []).append(label)
     said = []
-    for name, labels in by_name.items():
+    for name, labels in labels_by_name(named_products(fit)).items():
         meaning = str(fit.groups["posterior"][name].attrs.get("long_name", ""))
         explained = f" It is {meaning}." if meaning else ""
         if len(labels) == 1:

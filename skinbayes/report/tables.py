@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from skinbayes.phrases import sample_size
-from skinbayes.plot.numbers import interval, number, quantity
+from skinbayes.phrases import number, sample_size
+from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
+
+Row: TypeAlias = dict[str, str]
+"""One line of a table: its texts by name."""
 
 MOST_LISTED = 4
 """Derived quantities with more rows than this are summarised, and listed in full behind a fold."""
@@ -22,105 +25,72 @@ MOST_UNFOLDED = 400
 """Longest list behind a fold."""
 
 
-@dataclass(frozen=True)
-class ParameterRow:
-    """One free parameter; ``ess`` and ``r_hat`` are empty if the engine has none."""
-
-    label: str
-    symbol: str
-    name: str
-    prior: str
-    source: str
-    median: str
-    interval: str
-    ess: str
-    r_hat: str
-
-
-@dataclass(frozen=True)
-class DerivedRow:
-    """One derived quantity, at one row of data or at all of them."""
-
-    symbol: str
-    name: str
-    median: str
-    interval: str
-
-
-@dataclass(frozen=True)
-class FixedRow:
-    """One input with a fixed value."""
-
-    symbol: str
-    name: str
-    value: str
-    source: str
-
-
-def parameter_rows(fit: Fit) -> list[ParameterRow]:
-    """The free parameters with prior, posterior and convergence."""
+def parameter_rows(fit: Fit) -> list[Row]:
+    """The free parameters with prior, posterior and convergence, which are empty if the engine has none."""
     rows = []
     for label, row in fit.summary().iterrows():
         name = str(label)
         prior = fit.provenance["priors"][name]
-        median, unit = float(row["median"]), str(row["unit"])
+        found = (float(row[key]) for key in ("q05", "median", "q95"))
         rows.append(
-            ParameterRow(
-                label=name,
-                symbol=fit.symbol(name),
-                name=spoken_name(name),
-                prior=str(prior["text"]),
-                source=str(prior["source"]),
-                median=quantity(median, unit),
-                interval=interval(float(row["q05"]), float(row["q95"]), unit, typical=median),
-                ess=sample_size(row["ess_bulk"]) if "ess_bulk" in row else "",
-                r_hat=f"{row['r_hat']:.3f}" if "r_hat" in row else "",
-            )
+            _values(fit.symbol(name), spoken_name(name), str(row["unit"]), *found)
+            | {
+                "prior": str(prior["text"]),
+                "source": str(prior["source"]),
+                "ess": sample_size(row["ess_bulk"]) if "ess_bulk" in row else "",
+                "r_hat": f"{row['r_hat']:.3f}" if "r_hat" in row else "",
+            }
         )
     return rows
 
 
-def derived_rows(fit: Fit) -> tuple[list[DerivedRow], list[DerivedRow]]:
+def derived_rows(fit: Fit) -> tuple[list[Row], list[Row]]:
     """Derived quantities: those to show, with one line for many rows of data, and the many lines behind a fold."""
-    by_name: dict[str, list[str]] = {}
-    for label in fit.derived_labels():
-        by_name.setdefault(label.partition("[")[0], []).append(label)
-    shown: list[DerivedRow] = []
-    folded: list[DerivedRow] = []
-    for name, labels in by_name.items():
-        rows = [_derived_row(fit, label) for label in labels[:MOST_UNFOLDED]]
+    shown: list[Row] = []
+    folded: list[Row] = []
+    for name, labels in labels_by_name(fit.derived_labels()).items():
+        found = np.array([fit.quantiles(label) for label in labels])
+        unit = fit.unit(name)
+        rows = [
+            _values(fit.symbol(label), spoken_name(label), unit, *(float(q) for q in quantiles))
+            for label, quantiles in zip(labels[:MOST_UNFOLDED], found, strict=False)
+        ]
         if len(labels) <= MOST_LISTED:
             shown += rows
             continue
         folded += rows
-        found = np.array([fit.quantiles(label) for label in labels])
         low, high = float(found[:, 1].min()), float(found[:, 1].max())
         ends = float(found[:, 0].min()), float(found[:, 2].max())
-        unit = fit.unit(name)
         same = high - low <= 1e-9 * abs(high)
         differ = bool((np.ptp(found, axis=0) > 1e-9 * abs(high)).any())
         shown.append(
-            DerivedRow(
-                symbol=fit.symbol(name),
-                name=f"{spoken_name(name)}, {len(labels)} rows",
-                median=f"{quantity(high, unit)} in all rows"
+            {
+                "symbol": fit.symbol(name),
+                "name": f"{spoken_name(name)}, {len(labels)} rows",
+                "median": f"{quantity(high, unit)} in all rows"
                 if same
                 else f"{interval(low, high, unit)}, by row",
-                interval=_interval(*ends, unit, high) + (", over all rows" if differ else ""),
-            )
+                "interval": _interval(*ends, unit, high) + (", over all rows" if differ else ""),
+            }
         )
     return shown, folded
 
 
-def _derived_row(fit: Fit, label: str) -> DerivedRow:
-    low, median, high = (float(q) for q in fit.quantiles(label))
-    unit = fit.unit(label)
-    return DerivedRow(
-        symbol=fit.symbol(label),
-        name=spoken_name(label),
-        median=quantity(median, unit),
-        interval=_interval(low, high, unit, median),
-    )
+def labels_by_name(labels: Iterable[str]) -> dict[str, list[str]]:
+    """Labels of each quantity: itself, or one for each level or row where it differs by these."""
+    found: dict[str, list[str]] = {}
+    for label in labels:
+        found.setdefault(label.partition("[")[0], []).append(label)
+    return found
+
+
+def _values(symbol: str, name: str, unit: str, low: float, median: float, high: float) -> Row:
+    return {
+        "symbol": symbol,
+        "name": name,
+        "median": quantity(median, unit),
+        "interval": _interval(low, high, unit, median),
+    }
 
 
 def _interval(low: float, high: float, unit: str, typical: float) -> str:
@@ -130,7 +100,7 @@ def _interval(low: float, high: float, unit: str, typical: float) -> str:
     return interval(low, high, unit, typical=typical)
 
 
-def fixed_rows(fit: Fit) -> list[FixedRow]:
+def fixed_rows(fit: Fit) -> list[Row]:
     """Inputs that were not inferred, or that follow one that was."""
     rows = []
     for label, entry in (fit.provenance["fixed"] | fit.provenance.get("tied", {})).items():
@@ -139,7 +109,9 @@ def fixed_rows(fit: Fit) -> list[FixedRow]:
         symbol = (known.symbol if known else name) + (f" ({level.removesuffix(']')})" if level else "")
         unit = known.unit if known else "1"
         value = str(entry["text"]) if "text" in entry else quantity(float(entry["value"]), unit, 6)
-        rows.append(FixedRow(symbol, spoken_name(label), value, str(entry["source"])))
+        rows.append(
+            {"symbol": symbol, "name": spoken_name(label), "value": value, "source": str(entry["source"])}
+        )
     return rows
 
 

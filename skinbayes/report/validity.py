@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.phrases import and_list, plural
-from skinbayes.plot.numbers import percent
+from skinbayes.phrases import and_list, percent, plural
 from skinbayes.plot.predictive import row_names
 from skinbayes.plot.rows import label_columns, levels_of_rows
 

@@ -26,42 +26,34 @@ class NamedSurface:
     spectrum: SelfAffineSpectrum
 
 
+def _wrist(rms_height: float, wavevector_rolloff: float) -> SelfAffineSpectrum:
+    return SelfAffineSpectrum(
+        rms_height=rms_height,
+        hurst_exponent=0.78,
+        wavevector_min=1e3,
+        wavevector_rolloff=wavevector_rolloff,
+        wavevector_max=1e9,
+    )
+
+
 _ALL = (
     NamedSurface(
         name="paper_reference",
         description="Wrist skin of Persson et al. 2013, Sect. 3, with the plateau up to q_r = 6.345e3 1/m that the text does "
         "not print but its slope of 2.8 and total area of 2.7 A0 require.",
-        spectrum=SelfAffineSpectrum(
-            rms_height=22.4e-6,
-            hurst_exponent=0.78,
-            wavevector_min=1e3,
-            wavevector_rolloff=6.345e3,
-            wavevector_max=1e9,
-        ),
+        spectrum=_wrist(22.4e-6, 6.345e3),
     ),
     NamedSurface(
         name="paper_reference_sharp",
         description="The same amplitude at large wavevectors without a plateau: h_rms = 70.8 µm instead of 22.4 µm, "
         "slope 2.8.",
-        spectrum=SelfAffineSpectrum(
-            rms_height=70.8e-6,
-            hurst_exponent=0.78,
-            wavevector_min=1e3,
-            wavevector_rolloff=1e3,
-            wavevector_max=1e9,
-        ),
+        spectrum=_wrist(70.8e-6, 1e3),
     ),
     NamedSurface(
         name="paper_printed",
         description="The four numbers printed in Persson et al. 2013, Sect. 3. Inconsistent: they give slope 0.88 and total "
         "area 1.31 A0, not the 2.8 and 2.7 A0 printed beside them. For comparison only.",
-        spectrum=SelfAffineSpectrum(
-            rms_height=22.4e-6,
-            hurst_exponent=0.78,
-            wavevector_min=1e3,
-            wavevector_rolloff=1e3,
-            wavevector_max=1e9,
-        ),
+        spectrum=_wrist(22.4e-6, 1e3),
     ),
 )
 

@@ -56,22 +56,17 @@ class EnsembleSteps:
 
 
 class Density:
-    """The target's log-density, row by row or batched, with NaN and +inf counted and taken as −inf."""
+    """The target's log-density with NaN and +inf counted and taken as −inf."""
 
-    def __init__(self, target: Target, vectorize: bool) -> None:
+    def __init__(self, target: Target) -> None:
         self._target = target
-        self._vectorize = vectorize
         self.evaluations = 0
         self.invalid = 0
         self.first_invalid = np.full(len(target.names), np.nan)
 
     def __call__(self, position: FloatArray) -> FloatArray:
         """Log-density of each row of ``position`` (shape ``(B, D)``), shape ``(B,)``."""
-        if self._vectorize:
-            value = np.array(self._target.log_density(position), dtype=float)
-        else:
-            rows = [self._target.log_density(position[row : row + 1]) for row in range(len(position))]
-            value = np.concatenate([np.asarray(row, dtype=float) for row in rows])
+        value = np.array(self._target.log_density(position), dtype=float)
         invalid = np.isnan(value) | (value == np.inf)
         if invalid.any():
             if not self.invalid:
@@ -82,9 +77,7 @@ class Density:
         return value
 
 
-def advance(
-    target: Target, state: EnsembleState, steps: int, vectorize: bool, moves: MoveFactory
-) -> EnsembleSteps:
+def advance(target: Target, state: EnsembleState, steps: int, moves: MoveFactory) -> EnsembleSteps:
     """Move an ensemble by ``steps`` steps.
 
     The result depends on the arguments only, so it does not matter in which process, after which interruption or
@@ -95,7 +88,6 @@ def advance(
     target : the density
     state : where the ensemble stands
     steps : how many steps, at least 1
-    vectorize : one call of the density for half the ensemble, or one for each walker
     moves : builds the proposals
 
     Returns
@@ -105,7 +97,7 @@ def advance(
     import emcee
 
     walkers, dimension = state.positions.shape
-    density = Density(target, vectorize)
+    density = Density(target)
     sampler = emcee.EnsembleSampler(walkers, dimension, density, moves=moves())
     # emcee's own wrapper prints to standard output when a call is interrupted, raises on NaN and accepts +inf.
     sampler.compute_log_prob = lambda position: (density(position), None)

@@ -21,6 +21,17 @@ class Engine(Protocol):
 
     Any object with ``run`` is one. Two attributes are looked at if it has them: ``options``, the class of its options (a subclass
     of `EngineOptions`; itself if missing), and ``package``, the library whose version is kept with the result.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> class FromPrior:
+    ...     def run(self, target, options, store, progress):
+    ...         unit = np.random.default_rng(options.seed).random((1000, len(target.names)))
+    ...         position = target.prior_transform(unit)
+    ...         return Draws(position, log_weights=target.log_likelihood(position))
+    >>> find_engine(FromPrior())[0]
+    'FromPrior'
     """
 
     def run(
@@ -38,6 +49,18 @@ class Engine(Protocol):
         options : the seed, from which all randomness has to come, the effective sample size wanted, and more
         store : where steps may be kept so that the run can be resumed; None keeps nothing
         progress : to be called now and then with anything that has ``steps`` and ``sentence(width)``
+
+        Returns
+        -------
+        Draws
+            In the coordinates of the target, ``(chains, draws, D)`` or ``(draws, D)``, with weights where they have any.
+
+        Examples
+        --------
+        >>> import skinbayes as sb
+        >>> target = sb.load_problem("finger-null").target()
+        >>> FromPrior().run(target, EngineOptions(seed=1), None, None).samples.shape
+        (1, 1000, 4)
         """
 
 
@@ -57,6 +80,15 @@ def register_engine(name: str, engine: Engine) -> None:
     ------
     InputError
         The name is taken or no name, or the engine has no ``run``.
+
+    Examples
+    --------
+    >>> class Mine:
+    ...     def run(self, target, options, store, progress):
+    ...         return Draws(target.starts(np.random.default_rng(options.seed), 100))
+    >>> register_engine("mine", Mine())
+    >>> find_engine("mine")[0], ENGINES.pop("mine") is None
+    ('mine', False)
     """
     if not name.replace("_", "").replace("-", "").isalnum():
         raise InputError(f"engine: name {name!r} found; expected letters, digits, '_' and '-'")

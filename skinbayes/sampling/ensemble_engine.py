@@ -76,7 +76,7 @@ def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
 def _evidence(chains: Chains, target: Target, options: SamplerOptions) -> tuple[float, float] | None:
     """ln Z and its error where walkers gave the draws; None if no proposal resembles the posterior."""
     kept = chains.positions[:, chains.kept]
-    density = Density(target, options.vectorize)
+    density = Density(target)
     found = importance_draws(
         kept.reshape(len(kept), -1, kept.shape[-1]),
         chains.log_density[:, chains.kept].reshape(len(kept), -1),

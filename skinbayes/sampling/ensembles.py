@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.advance import EnsembleState, EnsembleSteps
+from skinbayes.sampling.advance import Density, EnsembleState, EnsembleSteps, advance
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.finish import Finish
 from skinbayes.sampling.moves import MoveFactory, moves_for
@@ -22,7 +22,7 @@ from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
-from skinbayes.sampling.workers import working
+from skinbayes.sampling.workers import sharing_out
 
 
 class SamplingInterrupted(KeyboardInterrupt):
@@ -49,7 +49,7 @@ def run_ensembles(
     """Sample a target until the stopping rule is met, importance sampling is accepted or ``max_steps`` are made.
 
     The draws depend on the target, ``options.seed``, the numbers of ensembles and walkers and the moves alone. They are
-    the same to the last bit with any number of cores, vectorised or not (if the target treats rows alike), and
+    the same to the last bit with any number of cores, and
     whether or not the run was interrupted and resumed; where it stops depends on the number of steps alone.
 
     Parameters
@@ -80,23 +80,27 @@ def run_ensembles(
     states = gathered(rounds[-1], len(rounds), options.seed) if rounds else initial_states(target, options)
     resumed, spent = len(rounds), 0.0
     finish = Finish(target, options)
+    work = _Work(target, options.block_steps, moves)
     try:
-        with working(target, options, moves) as crew:
+        with sharing_out(work, min(options.cores, options.ensembles)) as crew:
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
                     report = _judged(target, options, rounds)
                 if progress is not None:
-                    progress(_progress(steps, last, report, options, states, spent, len(rounds) - resumed))
+                    made = (len(rounds) - resumed) * options.block_steps
+                    walkers = sum(len(state.positions) for state in states)
+                    far = sum(left_behind(state.log_density, len(target.names)).sum() for state in states)
+                    pace = spent / made if made else None
+                    progress(EnsembleProgress(steps, last, report, options, walkers, int(far), pace))
                 accepted = finish.attempt(steps, partial(_joined, rounds), crew)
                 if report is None and accepted is not None:
                     report = _judged(target, options, rounds)
                 if report is not None and (accepted is not None or report.converged or steps >= last):
                     if store is not None:
                         store.complete()
-                    return replace(
-                        _chains(target, options, rounds, report), importance=accepted, refused=finish.refused
-                    )
+                    chains = _chains(target, options, rounds, report)
+                    return replace(chains, importance=accepted, refused=finish.refused)
                 started = time.perf_counter()
                 blocks = crew(states)
                 spent += time.perf_counter() - started
@@ -111,6 +115,20 @@ def run_ensembles(
             raise SamplingInterrupted(None) from None
         report = _judged(target, options, rounds)
         raise SamplingInterrupted(_chains(target, options, rounds, report)) from None
+
+
+@dataclass(frozen=True)
+class _Work:
+    """What worker processes do: move an ensemble one block further, or evaluate positions."""
+
+    target: Target
+    steps: int
+    moves: MoveFactory
+
+    def __call__(self, task: EnsembleState | FloatArray) -> Any:
+        if isinstance(task, EnsembleState):
+            return advance(self.target, task, self.steps, self.moves)
+        return Density(self.target)(task)
 
 
 def draw_identity(
@@ -136,27 +154,6 @@ def draw_identity(
         "sampler option block_steps": options.block_steps,
         "moves": f"{moves.__module__}.{moves.__qualname__}",
     }
-
-
-def _progress(
-    steps: int,
-    last: int,
-    report: StoppingReport | None,
-    options: SamplerOptions,
-    states: list[EnsembleState],
-    spent: float,
-    blocks: int,
-) -> EnsembleProgress:
-    dimension = states[0].positions.shape[1]
-    return EnsembleProgress(
-        steps=steps,
-        max_steps=last,
-        report=report,
-        options=options,
-        walkers=sum(len(state.positions) for state in states),
-        far_walkers=sum(int(left_behind(state.log_density, dimension).sum()) for state in states),
-        seconds_per_step=spent / (blocks * options.block_steps) if blocks else None,
-    )
 
 
 def _judged(target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]]) -> StoppingReport:

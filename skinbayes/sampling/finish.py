@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from skinbayes.sampling.importance import ImportanceDraws, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.stopping import is_check
 from skinbayes.sampling.target import Target
-from skinbayes.sampling.workers import Crew
 
 FIRST_ATTEMPT = 50
 """Steps after which importance sampling is tried for the first time; then each time the run is 30 % longer."""
@@ -44,7 +44,9 @@ class Finish:
         self._not_before = 0
         self.refused = ""
 
-    def attempt(self, steps: int, joined: Callable[[str], FloatArray], crew: Crew) -> ImportanceDraws | None:
+    def attempt(
+        self, steps: int, joined: Callable[[str], FloatArray], crew: Callable[[Sequence[Any]], list[Any]]
+    ) -> ImportanceDraws | None:
         """Draws if they are due and accepted; what comes out depends on the seed, ``steps`` and the positions alone.
 
         Parameters

@@ -1,11 +1,11 @@
 """Independent draws by importance sampling, from a proposal fitted to ensembles that have found the posterior.
 
-A walker needs tens of evaluations for an independent draw; a proposal that has the shape of the posterior needs one or two. The
-proposal is a mixture of Student t distributions, fitted to one half of the ensembles and examined with the other. A few rounds of
-draws improve it, weighted as draws of the mixture of all proposals so far (adaptive multiple importance sampling, Cornuet et al.
-2012, doi 10.1111/j.1467-9469.2011.00756.x). Only draws of the last proposal count: it was fitted to the others, which are
-therefore likelier under it than fresh ones, and ln Z of a normal distribution in 20 dimensions came out 0.02, four standard errors,
-too low with them. The draws are given up where anything speaks against them.
+A walker needs tens of evaluations for an independent draw; a proposal that has the shape of the posterior needs one or two.
+The proposal is a mixture of Student t distributions, fitted to one half of the ensembles and examined with the other. A few
+rounds of draws improve it, weighted as draws of the mixture of all proposals so far (adaptive multiple importance sampling,
+Cornuet et al. 2012, doi 10.1111/j.1467-9469.2011.00756.x). Only draws of the last proposal count: it was fitted to the others,
+which are therefore likelier under it than fresh ones, and ln Z of a normal distribution in 20 dimensions came out 0.02, four
+standard errors, too low with them. The draws are given up where anything speaks against them.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
@@ -16,6 +17,7 @@ from skinbayes.sampling.options import EngineOptions, whole
 from skinbayes.sampling.progress import PlainProgress, RunProgress
 from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.target import Target
+from skinbayes.sampling.workers import sharing_out
 
 REST = 0.01
 """A run ends when what is left of the evidence is at most this in its logarithm."""
@@ -53,8 +55,6 @@ class NestedOptions(EngineOptions):
             raise InputError(
                 "engine 'nested': dynesty is not installed; install it with: pip install 'skinbayes[nested]'"
             )
-        if self.cores != 1:
-            raise InputError(f"sampler option cores: {self.cores} found; nested sampling runs in 1 process.")
 
 
 class NestedEngine:
@@ -64,7 +64,8 @@ class NestedEngine:
     ellipsoid about all live points. On a ridge a hundred times longer than wide, random walks left the median of a run of 100
     live points uncertain by 0.10 in probability, slices by 0.05 (four runs each); the weights alone would claim 0.025.
     Therefore at least four runs are made, and the effective sample size is what their disagreement leaves of that of the weights.
-    Runs are not stored: what was stopped begins anew. The same seed gives the same draws.
+    Runs are not stored: what was stopped begins anew. The same seed gives the same draws on any number of cores, which share the
+    runs: each has its own stream, and how many of them are merged depends on what they found in their order alone.
     """
 
     options = NestedOptions
@@ -78,32 +79,48 @@ class NestedEngine:
         progress: Callable[[RunProgress], None] | None = None,
     ) -> Draws:
         """Weighted draws, one chain, and the evidence with its error."""
-        import dynesty
         import dynesty.utils
 
         runs: list[Any] = []
         steps = 0
-        while True:
-            sampler = dynesty.NestedSampler(
-                lambda position: float(target.log_likelihood(position[np.newaxis])[0]),
-                lambda unit: target.prior_transform(unit[np.newaxis])[0],
-                len(target.names),
-                nlive=options.live_points,
-                bound="single",
-                sample="rslice",
-                rstate=np.random.default_rng([options.seed, len(runs)]),
-            )
-            sampler.run_nested(
-                dlogz=REST, print_progress=progress is not None, print_func=_told(progress, steps, len(runs))
-            )
-            runs.append(sampler.results)
-            steps += int(sampler.results.niter)
-            if len(runs) < min(FEWEST_RUNS, options.max_runs):
-                continue
-            found = dynesty.utils.merge_runs(runs, print_progress=False) if len(runs) > 1 else runs[0]
-            sizes = _effective_sizes(runs, found)
-            if sizes.min() >= options.ess or len(runs) >= options.max_runs:
-                return _finished(found, sizes, options, len(runs), steps)
+        told = progress if options.cores == 1 else None  # worker processes cannot tell
+        with sharing_out(partial(_run, target, options, told), options.cores) as run_all:
+            while True:
+                last = min(len(runs) + options.cores, options.max_runs)
+                for result in run_all([(number, steps) for number in range(len(runs), last)]):
+                    runs.append(result)
+                    steps += int(result.niter)
+                    if progress is not None:
+                        words = f"ln Z of run {len(runs)} {float(result.logz[-1]):.1f}"
+                        progress(PlainProgress(steps, words))
+                    if len(runs) < min(FEWEST_RUNS, options.max_runs):
+                        continue
+                    found = dynesty.utils.merge_runs(runs, print_progress=False) if len(runs) > 1 else runs[0]
+                    sizes = _effective_sizes(runs, found)
+                    if sizes.min() >= options.ess or len(runs) >= options.max_runs:
+                        return _finished(found, sizes, options, len(runs), steps)
+
+
+def _run(
+    target: Target,
+    options: NestedOptions,
+    progress: Callable[[RunProgress], None] | None,
+    task: tuple[int, int],
+) -> Any:
+    """One run of dynesty, a function of its number alone; the iterations before it are for ``progress``."""
+    import dynesty
+
+    sampler = dynesty.NestedSampler(
+        lambda position: float(target.log_likelihood(position[np.newaxis])[0]),
+        lambda unit: target.prior_transform(unit[np.newaxis])[0],
+        len(target.names),
+        nlive=options.live_points,
+        bound="single",
+        sample="rslice",
+        rstate=np.random.default_rng([options.seed, task[0]]),
+    )
+    sampler.run_nested(dlogz=REST, print_progress=progress is not None, print_func=_told(progress, *task))
+    return sampler.results
 
 
 def _effective_sizes(runs: list[Any], found: Any) -> FloatArray:
@@ -139,12 +156,12 @@ def _finished(found: Any, sizes: FloatArray, options: NestedOptions, runs: int, 
     return Draws(found.samples, found.logwt, evidence, diagnostics)
 
 
-def _told(progress: Callable[[RunProgress], None] | None, before: int, runs: int) -> Any:
+def _told(progress: Callable[[RunProgress], None] | None, number: int, before: int) -> Any:
     """What dynesty calls at each iteration."""
 
     def tell(state: Any, iteration: int, calls: int, **more: Any) -> None:
         if progress is not None and iteration % TOLD == 1:
             left = f"ln of what is left of Z {state.delta_logz:.1f}"
-            progress(PlainProgress(before + iteration, f"run {runs + 1}: ln Z {state.logz:.1f}, {left}"))
+            progress(PlainProgress(before + iteration, f"run {number + 1}: ln Z {state.logz:.1f}, {left}"))
 
     return tell

@@ -10,15 +10,15 @@ from skinbayes.errors import InputError
 DEFAULT_WALKERS = 128
 """Walkers of an ensemble unless the dimension asks for more: enough for a kernel density of half of them."""
 
-FEWER_WALKERS = 64
-"""The same for targets whose evaluation takes far longer than a step of the sampler: the steps that the stopping rule asks for do
-not depend on the number of walkers."""
-
 EXPLORING_WALKERS = 32
-"""The same where the walkers only have to find the posterior, which is then drawn from by importance sampling."""
+"""Walkers of an ensemble that only has to find the posterior, which is then drawn from by importance sampling."""
 
 BLOCK_STEPS, EXPLORING_BLOCK_STEPS = 100, 25
 """Steps between two writes to the store, without and with importance sampling."""
+
+FEWER_WALKERS = 64
+"""The same for targets whose evaluation takes far longer than a step of the sampler: the steps that the stopping rule asks for do
+not depend on the number of walkers."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,6 @@ class SamplerOptions(EngineOptions):
     max_steps : steps of each ensemble after which the run ends, converged or not (a total: resuming does not add)
     block_steps : steps between two writes to the store; None is :data:`BLOCK_STEPS` (:data:`EXPLORING_BLOCK_STEPS` with
         ``importance``)
-    vectorize : evaluate half an ensemble in one call, else walker by walker
     importance : let the walkers only find the posterior, and draw from it by importance sampling as soon as that is accepted
         (see ``skinbayes.sampling.importance``); also gives ln of the evidence
 
@@ -88,11 +87,12 @@ class SamplerOptions(EngineOptions):
     steps_over_tau: float = 50.0
     max_steps: int = 10_000
     block_steps: int = None  # type: ignore[assignment]  # filled in below
-    vectorize: bool = True
     importance: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if not isinstance(self.importance, bool):
+            raise InputError(f"sampler option importance: {self.importance!r} found, true or false expected.")
         if self.block_steps is None:
             object.__setattr__(self, "block_steps", EXPLORING_BLOCK_STEPS if self.importance else BLOCK_STEPS)
         whole("ensembles", self.ensembles, 2)

@@ -76,13 +76,6 @@ class EnsembleProgress:
         return "collecting" if agree and np.isfinite(report.tau).all() else "settling"
 
     @property
-    def effective_sample_size(self) -> float | None:
-        """The smallest of all coordinates at the last verdict; None while it is unknown."""
-        if self.report is None or not np.isfinite(self.report.tau).all():
-            return None
-        return float(np.min(self.report.ess_bulk))
-
-    @property
     def next_check(self) -> int:
         """Steps after which the stopping rule is applied next."""
         return min(next_check(self.steps, self.options.block_steps), self.max_steps)

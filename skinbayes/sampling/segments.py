@@ -126,18 +126,9 @@ def _arrays(blocks: list[EnsembleSteps]) -> dict[str, NDArray[np.generic]]:
     """The blocks of all ensembles as arrays whose first axis is the ensemble; none for no blocks."""
     if not blocks:
         return {}
-    states = [block.random_state for block in blocks]
-    values = {
-        "positions": [block.positions for block in blocks],
-        "log_density": [block.log_density for block in blocks],
-        "generator_key": [state[1] for state in states],
-        "generator_position": [state[2] for state in states],
-        "generator_has_gauss": [state[3] for state in states],
-        "generator_cached_gaussian": [state[4] for state in states],
-        "evaluations": [block.evaluations for block in blocks],
-        "invalid": [block.invalid for block in blocks],
-        "first_invalid": [block.first_invalid for block in blocks],
-    }
+    states = list(zip(*(block.random_state for block in blocks), strict=True))[1:]
+    values = dict(zip((name for name in _KINDS if name.startswith("generator_")), states, strict=True))
+    values |= {name: tuple(getattr(block, name) for block in blocks) for name in _KINDS if name not in values}
     return {name: np.array(values[name], dtype=kind) for name, kind in _KINDS.items()}
 
 

@@ -37,7 +37,7 @@ def initial_states(target: Target, options: SamplerOptions) -> list[EnsembleStat
     for index, child in enumerate(np.random.SeedSequence(options.seed).spawn(options.ensembles)):
         for_starts, for_steps = child.spawn(2)
         positions = np.array(target.starts(np.random.default_rng(for_starts), walkers), dtype=float)
-        log_density = Density(target, options.vectorize)(positions)
+        log_density = Density(target)(positions)
         _check(target.names, index, positions, log_density, walkers)
         # emcee draws from a RandomState; a Generator would be ignored.
         generator = np.random.RandomState(np.random.MT19937(for_steps))

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import json
 import re
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from skinbayes.atomic import PARTIAL, write_atomically
-from skinbayes.errors import FingerprintMismatch, InputError, RepairWarning, cannot_write
+from skinbayes.errors import FingerprintMismatch, InputError, cannot_write, warn_of_repair
 from skinbayes.sampling.advance import EnsembleSteps
 from skinbayes.sampling.segments import OtherRun, read_segment, segment_image
 from skinbayes.sampling.watched import WatchedDirectory
@@ -136,7 +135,7 @@ class SampleStore:
             elif segments:
                 trouble = "missing"
             if trouble:
-                _warn(f"{header}: {trouble}; written again.")
+                warn_of_repair(f"{header}: {trouble}; written again.")
             self._begin()
         else:
             self._watched = WatchedDirectory(self.path)
@@ -237,7 +236,7 @@ class SampleStore:
             later = segments[len(rounds) :]
             for file in later:
                 put_aside(file)
-            _warn(
+            warn_of_repair(
                 f"{expected}: {trouble}. Blocks of steps kept: {len(rounds)}; put aside as *{DAMAGED}: {len(later)}. "
                 "The steps from there on are made again, and the draws become the same."
             )
@@ -251,7 +250,3 @@ class SampleStore:
             if self._watched is not None:
                 self._watched.check()
             raise cannot_write(target, error) from error
-
-
-def _warn(message: str) -> None:
-    warnings.warn(message, RepairWarning, stacklevel=3)

@@ -1,4 +1,4 @@
-"""Ensembles advanced, or positions evaluated, in this process or shared out to several."""
+"""Pieces of work done in this process or shared out to several."""
 
 from __future__ import annotations
 
@@ -8,68 +8,50 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
-from typing import Any, TypeAlias
+from typing import Any, TypeVar
 
-from skinbayes.arrays import FloatArray
 from skinbayes.errors import MachineError
-from skinbayes.sampling.advance import Density, EnsembleState, EnsembleSteps, advance
-from skinbayes.sampling.moves import MoveFactory
-from skinbayes.sampling.options import SamplerOptions
-from skinbayes.sampling.target import Target
 
-Work: TypeAlias = EnsembleState | FloatArray
-"""An ensemble to be moved one block further, or positions ``(B, D)`` to be evaluated."""
-
-Done: TypeAlias = EnsembleSteps | FloatArray
-"""The block, or log-densities ``(B,)``."""
-
-Crew: TypeAlias = Callable[[Sequence[Work]], list[Any]]
-"""Does several pieces of work and returns what is done in their order."""
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 
 @contextmanager
-def working(target: Target, options: SamplerOptions, moves: MoveFactory) -> Iterator[Crew]:
-    """Provide what moves ensembles one block further and evaluates positions, with ``options.cores`` processes.
+def sharing_out(
+    work: Callable[[Task], Result], processes: int
+) -> Iterator[Callable[[Sequence[Task]], list[Result]]]:
+    """Provide what does several tasks, in this process if it is the only one.
 
-    Worker processes get the target once and end with this process, however it ends.
+    Worker processes get ``work`` once and end with this process, however it ends.
 
     Parameters
     ----------
-    target : the density; must be picklable if there is more than one core
-    options : cores, block length and how to evaluate
-    moves : builds the proposals
+    work : does one task, as a function of the task alone; must be picklable if there is more than one process
+    processes : how many share the tasks
 
     Yields
     ------
-    a function of several states or positions that returns the blocks or log-densities in the same order
+    a function of the tasks that returns their results in the same order
     """
-    count = min(options.cores, options.ensembles)
-    if count == 1:
-        yield lambda pieces: [
-            _done(piece, target, options.block_steps, options.vectorize, moves) for piece in pieces
-        ]
+    if processes == 1:
+        yield lambda tasks: [work(task) for task in tasks]
         return
     crew: list[_Worker] = []
     try:
-        for _ in range(count):
-            crew.append(_Worker((target, options.block_steps, options.vectorize, moves)))
-        yield lambda pieces: _share_out(crew, pieces)
+        for _ in range(processes):
+            crew.append(_Worker(work))
+        yield lambda tasks: _share_out(crew, tasks)
     finally:
         for worker in crew:
             worker.stop()
 
 
 class _Worker:
-    """A process that does work; one that dies is started again, once, and gets the same work.
+    """A process that does tasks; one that dies is started again, once, and gets the same task."""
 
-    Parameters
-    ----------
-    task : target, steps of a block, how to evaluate, and moves
-    """
-
-    def __init__(self, task: tuple[Target, int, bool, MoveFactory]) -> None:
-        self._task = task
-        self._piece: tuple[int, Work] | None = None
+    def __init__(self, work: Callable[[Any], Any]) -> None:
+        self._work = work
+        self._task: tuple[int, Any] | None = None
         self._died = False
         self._start()
 
@@ -80,30 +62,30 @@ class _Worker:
             multiprocessing.get_context("forkserver") if forkserver else multiprocessing.get_context("spawn")
         )
         self.connection, there = context.Pipe()
-        self._process = context.Process(target=_serve, args=(there, *self._task), daemon=True)
+        self._process = context.Process(target=_serve, args=(there, self._work), daemon=True)
         with _interrupts_held_back():
             self._process.start()
         there.close()
 
-    def send(self, index: int, piece: Work) -> None:
-        """Give it something to do."""
-        self._piece = index, piece
+    def send(self, index: int, task: Any) -> None:
+        """Give it a task to do."""
+        self._task = index, task
         try:
-            self.connection.send(self._piece)
+            self.connection.send(self._task)
         except OSError:
             self._again()
 
-    def receive(self) -> tuple[int, Done | Exception] | None:
-        """The number of the piece and what became of it; None if it died and begins anew."""
+    def receive(self) -> tuple[int, Any] | None:
+        """The number of the task and its result, or the error that it raised; None if it died and begins anew."""
         try:
-            reply: tuple[int, Done | Exception] = self.connection.recv()
+            reply: tuple[int, Any] = self.connection.recv()
         except (EOFError, OSError):
             self._again()
             return None
         return reply
 
     def _again(self) -> None:
-        """Start the process once more, with what it had to do: what is done depends on the piece alone."""
+        """Start the process once more, with the task it was to do: a result depends on its task alone."""
         if self._died:
             raise MachineError(
                 "A worker process of the sampler died twice, perhaps for want of memory: fewer --cores need less. "
@@ -112,8 +94,8 @@ class _Worker:
         self._died = True
         self.stop()
         self._start()
-        if self._piece is not None:
-            self.send(*self._piece)
+        if self._task is not None:
+            self.send(*self._task)
 
     def stop(self) -> None:
         """End the process."""
@@ -135,26 +117,20 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _serve(connection: Connection, target: Target, steps: int, vectorize: bool, moves: MoveFactory) -> None:
-    """Do work as it is sent, until the other end closes."""
+def _serve(connection: Connection, work: Callable[[Any], Any]) -> None:
+    """Do tasks as they are sent, until the other end closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    reply: tuple[int, Done | Exception]
     try:
         while True:
-            index, piece = connection.recv()
+            index, task = connection.recv()
+            reply: tuple[int, Any]
             try:
-                reply = index, _done(piece, target, steps, vectorize, moves)
+                reply = index, work(task)
             except Exception as error:
                 reply = index, _portable(error)
             connection.send(reply)
     except (EOFError, OSError):
         return
-
-
-def _done(piece: Work, target: Target, steps: int, vectorize: bool, moves: MoveFactory) -> Done:
-    if isinstance(piece, EnsembleState):
-        return advance(target, piece, steps, vectorize, moves)
-    return Density(target, vectorize)(piece)
 
 
 def _portable(error: Exception) -> Exception:
@@ -165,10 +141,10 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-def _share_out(crew: list[_Worker], pieces: Sequence[Work]) -> list[Done]:
-    """Give each free worker the next piece; which worker does what does not change the result."""
-    waiting = list(enumerate(pieces))[::-1]
-    blocks: dict[int, Done] = {}
+def _share_out(crew: list[_Worker], tasks: Sequence[Any]) -> list[Any]:
+    """Give each free worker the next task; which worker does what does not change the result."""
+    waiting = list(enumerate(tasks))[::-1]
+    results: dict[int, Any] = {}
     busy = crew[: len(waiting)]
     for worker in busy:
         worker.send(*waiting.pop())
@@ -181,9 +157,9 @@ def _share_out(crew: list[_Worker], pieces: Sequence[Work]) -> list[Done]:
             index, result = reply
             if isinstance(result, Exception):
                 raise result
-            blocks[index] = result
+            results[index] = result
             if waiting:
                 worker.send(*waiting.pop())
             else:
                 busy.remove(worker)
-    return [blocks[index] for index in range(len(pieces))]
+    return [results[index] for index in range(len(tasks))]

@@ -7,12 +7,11 @@ from skinbayes.statistics.noise import NoiseFamily
 from skinbayes.statistics.noise_families import NOISE_FAMILIES, noise_family, register_noise
 from skinbayes.statistics.priors import Prior, make_prior
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
-from skinbayes.statistics.two_way import AnalysisOfVariance, crossed_analysis_of_variance
+from skinbayes.statistics.two_way import residual_scatter
 
 __all__ = [
     "FAMILIES",
     "NOISE_FAMILIES",
-    "AnalysisOfVariance",
     "CrossedGroups",
     "Family",
     "LogDensity",
@@ -21,9 +20,9 @@ __all__ = [
     "Prior",
     "Transform",
     "VectorTransform",
-    "crossed_analysis_of_variance",
     "make_prior",
     "noise_family",
     "register_noise",
+    "residual_scatter",
     "transform_for",
 ]

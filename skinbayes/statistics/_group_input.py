@@ -39,13 +39,7 @@ class GroupData:
         """The batch in parts whose matrices fit in the cache; at least one, also of an empty batch."""
         for start in range(0, max(len(self.residual), 1), _PART):
             place = slice(start, start + _PART)
-            yield GroupData(
-                self.residual[place],
-                self.width[place],
-                self.weight[place],
-                self.scale[place],
-                self.possible[place],
-            )
+            yield GroupData(*(values[place] for values in vars(self).values()))
 
 
 def scale_of_effects(scales: FloatArray, level_counts: Sequence[int]) -> FloatArray:

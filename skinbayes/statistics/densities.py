@@ -34,15 +34,6 @@ class _WithJacobian:
 
 
 @dataclass(frozen=True)
-class _WithoutJacobian:
-    function: BatchFunction
-    transform: VectorTransform
-
-    def __call__(self, z: FloatArray) -> FloatArray:
-        return self.function(self.transform.inverse(z))
-
-
-@dataclass(frozen=True)
 class _Product:
     prior: BatchFunction
     likelihood: BatchFunction
@@ -59,15 +50,6 @@ class _Product:
 
 
 @dataclass(frozen=True)
-class _Sum:
-    first: BatchFunction
-    second: BatchFunction
-
-    def __call__(self, theta: FloatArray) -> FloatArray:
-        return self.first(theta) + self.second(theta)
-
-
-@dataclass(frozen=True)
 class LogLikelihood:
     """ln p(data | θ) as a function of a batch of parameters. Picklable if ``function`` is.
 
@@ -81,18 +63,6 @@ class LogLikelihood:
     def __call__(self, theta: FloatArray) -> FloatArray:
         """Log-likelihood of each row of ``theta``, shape ``(B,)``."""
         return self.function(theta)
-
-    def transformed(self, transform: VectorTransform) -> LogLikelihood:
-        """The same likelihood as a function of unconstrained coordinates: no Jacobian."""
-        return LogLikelihood(_WithoutJacobian(self.function, transform))
-
-    def times(self, other: LogLikelihood) -> LogLikelihood:
-        """Likelihood of two independent sets of data together."""
-        if not isinstance(other, LogLikelihood):
-            raise TypeError(
-                "A likelihood is multiplied by a likelihood; write prior.times(likelihood) for a posterior."
-            )
-        return LogLikelihood(_Sum(self.function, other.function))
 
 
 @dataclass(frozen=True)

@@ -52,6 +52,15 @@ class NoiseFamily:
     logarithmic : True if ln of the data scatters, so that data and predictions must be positive
     shape_parameters : names of the parameters beside the scale, dimensionless and positive, such as ``degrees_of_freedom``
     normal : True if the residual is normally distributed; only then can effects of groups be integrated out
+
+    Examples
+    --------
+    Examples of methods go on from this one.
+
+    >>> from skinbayes.statistics import noise_family
+    >>> gaussian, lognormal = noise_family("gaussian"), noise_family("lognormal")
+    >>> lognormal.parameters, lognormal.logarithmic
+    (('scale',), True)
     """
 
     name: str
@@ -84,6 +93,11 @@ class NoiseFamily:
         Returns
         -------
         r, shape ``(B, N)``: unit of the observable, or dimensionless for the logarithmic families
+
+        Examples
+        --------
+        >>> gaussian.residual([1.0], [[3.0]]).tolist(), lognormal.residual([1.0], [[np.e]]).tolist()
+        ([[-2.0]], [[-1.0]])
         """
         y, f = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
         if not self.logarithmic:
@@ -114,6 +128,11 @@ class NoiseFamily:
         Returns
         -------
         w, shape ``(B, N)``: unit of the observable, or dimensionless for the logarithmic families
+
+        Examples
+        --------
+        >>> gaussian.width([[1.0]], 3.0, spread=4.0).tolist()
+        [[5.0]]
         """
         f = np.asarray(predicted, dtype=float)
         with np.errstate(all="ignore"):
@@ -171,8 +190,7 @@ class NoiseFamily:
 
         Examples
         --------
-        >>> from skinbayes.statistics import noise_family
-        >>> value = noise_family("gaussian").log_density([1.0], [[1.0], [3.0]], 1.0)
+        >>> value = gaussian.log_density([1.0], [[1.0], [3.0]], 1.0)
         >>> print(value.round(4).tolist())
         [[-0.9189], [-2.9189]]
         """
@@ -212,6 +230,16 @@ class NoiseFamily:
         Returns
         -------
         draws, shape ``(B, N)``, unit of the observable; NaN where :meth:`log_density` is −inf for all data
+
+        Raises
+        ------
+        TypeError
+            as :meth:`log_density` does
+
+        Examples
+        --------
+        >>> lognormal.draw(np.random.default_rng(1), [[1.0, -1.0]], 0.0).tolist()
+        [[1.0, nan]]
         """
         f = np.asarray(predicted, dtype=float)
         w = self.width(f, scale, spread, discrepancy, observed)
@@ -232,6 +260,13 @@ class NoiseFamily:
         ------
         InputError
             if a datum is not finite, or not positive in a logarithmic family; names the row, counted from 1
+
+        Examples
+        --------
+        >>> gaussian.check_observed([0.0, 1.0])
+        >>> lognormal.check_observed([0.0, 1.0])
+        Traceback (most recent call last):
+        skinbayes.errors.InputError: Row 1 of the data is 0; noise 'lognormal' expects a finite number > 0.
         """
         y = np.asarray(observed, dtype=float)
         bad = ~np.isfinite(y) | ((y <= 0.0) if self.logarithmic else False)

@@ -176,13 +176,6 @@ class Prior:
         low, high = self.quantile([tail, 1.0 - tail])
         return (float(low), float(high))
 
-    def mass_within(self, lower: float, upper: float) -> float:
-        """Probability of a value between ``lower`` and ``upper`` (unit of the parameter)."""
-        low, high = max(lower, self.lower), min(upper, self.upper)
-        if not low < high:
-            return 0.0
-        return float(min(1.0, _mass(self._scipy(), low, high) / np.exp(self._log_mass)))
-
     def truncated(self, lower: float = -inf, upper: float = inf) -> Prior:
         """This prior cut off at ``lower`` and ``upper`` (unit of the parameter) and normalised again.
 

@@ -24,6 +24,9 @@ from skinbayes.units.unit_words import UnknownUnit, canonical_unit, nearest_unit
 _NUMBER = re.compile(
     r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf(?:inity)?(?![a-z])", re.IGNORECASE
 )
+_WRITTEN = re.compile(
+    r"[+-]?[0-9.,](?:[0-9.,'’\s]*[0-9])?(?:[eE][+-]?[0-9]+)?"
+)  # with what may stand between digits
 _HEADER = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 
 _MEANING = {
@@ -51,8 +54,13 @@ _MEANING = {
 
 def describe_unit(unit: str) -> str:
     """What is expected in ``unit``, for messages: ``"a pressure in Pa, for example '15 MPa'"``."""
-    meaning, example = _MEANING.get(unit, ("a value", f"1 {unit}"))
-    return f"{meaning}{'' if unit == '1' else f' in {unit}'}, for example '{example}'"
+    meaning = _MEANING[unit][0] if unit in _MEANING else "a value"
+    return f"{meaning}{'' if unit == '1' else f' in {unit}'}, for example '{unit_example(unit)}'"
+
+
+def unit_example(unit: str) -> str:
+    """A value in ``unit`` as a person would write it."""
+    return _MEANING[unit][1] if unit in _MEANING else f"1 {unit}"
 
 
 @cache
@@ -186,15 +194,16 @@ def _advice(unknown: UnknownUnit, to_unit: str) -> str:
     """What may have been meant: units like it that have the right dimension, or why a word is no unit."""
     if why := why_no_unit(unknown.word):
         return f" ({why})"
-    fitting = [text for text in nearest_units(unknown) if _fits(text, to_unit)][:2]
+    fitting = [text for text in nearest_units(unknown) if converts(text, to_unit)][:2]
     if not fitting and unknown.word and unknown.word != unknown.text:
         return f" (no word {_shortened(unknown.word)!r} is known in units)"
     return f" (did you mean {' or '.join(repr(text) for text in fitting)}?)" if fitting else ""
 
 
-def _fits(text: str, to_unit: str) -> bool:
+def converts(from_unit: str, to_unit: str) -> bool:
+    """Whether a text is a unit of the dimension of an SI unit."""
     try:
-        unit_conversion(text, to_unit)
+        unit_conversion(from_unit, to_unit)
     except (UnknownUnit, OtherDimension):
         return False
     return True
@@ -247,7 +256,7 @@ def parse_quantity(value: str | int | float, unit: str, *, where: str, differenc
     spelled_infinite = "inf" in match.group().lower()
     if not isfinite(number) and not (spelled_infinite and number > 0):
         raise InputError(f"{where}: {text[:80]!r} is not a number that can be used; {expected}")
-    if advice := comma_advice(re.split(r"\s+(?=[^\s0-9,.])", text, maxsplit=1)[0]):
+    if (written := _WRITTEN.match(text)) and (advice := comma_advice(written[0])):
         raise InputError(f"{where}: {text[:80]!r} has {advice}; {expected}")
     if not unit_text:
         if number == inf or unit == "1":

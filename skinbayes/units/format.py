@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from math import isfinite
 
-from skinbayes.units.conversion import OtherDimension, unit_conversion
-from skinbayes.units.unit_words import UnknownUnit
+from skinbayes.units.conversion import converts, unit_conversion
 
 _PREFIXES = (
     (1e9, "G"),
@@ -64,16 +63,8 @@ def format_quantity(value_si: float, unit: str, digits: int = 4, written: str | 
 
 def _written_unit(written: str, unit: str) -> str:
     """The last unit in a text that ``unit`` converts to; degrees for an angle of which nothing is known."""
-    found = [text for text in re.findall(r"[0-9.]\s*([°º]?\s?[A-Za-z°º]+)", written) if _converts(text, unit)]
+    found = [text for text in re.findall(r"[0-9.]\s*([°º]?\s?[A-Za-z°º]+)", written) if converts(text, unit)]
     return found[-1] if found else "deg" if unit == "rad" else ""
-
-
-def _converts(text: str, unit: str) -> bool:
-    try:
-        unit_conversion(text, unit)
-    except (UnknownUnit, OtherDimension):
-        return False
-    return True
 
 
 def _plain(number: float, digits: int) -> str:

@@ -6,9 +6,14 @@ import re
 from math import isnan
 from numbers import Real
 
-_GROUPED = re.compile(r"[+-]?[0-9]{1,3}(?:(?P<mark>[,'’  \u00a0\u2009\u202f])[0-9]{3})(?:(?P=mark)[0-9]{3})*")
-_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?:[eE][+-]?[0-9]+)?")
-_MIXED = re.compile(r"[+-]?[0-9]{1,3}(?:[.,][0-9]{3})+[.,][0-9]+(?:[eE][+-]?[0-9]+)?")
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""A number as it is read: with a decimal point."""
+
+_THOUSANDS = re.compile(
+    r"(?P<whole>[+-]?[1-9][0-9]{0,2}(?P<mark>[.,'’  \u00a0\u2009\u202f])[0-9]{3}(?:(?P=mark)[0-9]{3})*)"
+    r"(?P<decimals>(?!(?P=mark))[.,][0-9]+)?(?P<power>[eE][+-]?[0-9]+)?"
+)
+_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]+)?")
 
 
 def comma_advice(number: str) -> str:
@@ -16,8 +21,8 @@ def comma_advice(number: str) -> str:
 
     Examples
     --------
-    >>> comma_advice("0,5")
-    'a decimal comma; write 0.5'
+    >>> comma_advice("0,5"), comma_advice("1.234,5")
+    ('a decimal comma; write 0.5', 'separated thousands; write 1234.5')
     >>> comma_advice("1,000")
     "a comma that may stand before decimals or between thousands; write 1.000 if it is decimal, 1000 if it is a thousand's"
     >>> comma_advice("1 000"), comma_advice("1.5")
@@ -25,22 +30,17 @@ def comma_advice(number: str) -> str:
     """
     if len(number) > 40:
         return ""
-    if grouped := _GROUPED.fullmatch(number):
-        joined = re.sub(r"[^0-9+-]", "", number)
-        if grouped["mark"] == "," and number.count(",") == 1 and not number.lstrip("+-").startswith("0"):
+    if found := _THOUSANDS.fullmatch(number):
+        mark, decimals, power = found["mark"], found["decimals"] or "", found["power"] or ""
+        joined = re.sub("[^0-9+-]", "", found["whole"])
+        if decimals or mark not in ",." or number.count(mark) > 1:
+            return f"separated thousands; write {joined}{decimals.replace(',', '.')}{power}"
+        if mark == "," and not power:
             return (
                 "a comma that may stand before decimals or between thousands; "
                 f"write {number.replace(',', '.')} if it is decimal, {joined} if it is a thousand's"
             )
-        if grouped["mark"] != "," or number.count(",") > 1:
-            return f"separated thousands; write {joined}"
-    if _COMMA.fullmatch(number):
-        return f"a decimal comma; write {number.replace(',', '.')}"
-    if _MIXED.fullmatch(number) and len({*number} & {*".,"}) == 2:
-        mark = "." if number.rfind(".") > number.rfind(",") else ","
-        whole, _, decimals = number.rpartition(mark)
-        return f"separated thousands; write {re.sub('[.,]', '', whole)}.{decimals}"
-    return ""
+    return f"a decimal comma; write {number.replace(',', '.')}" if _COMMA.fullmatch(number) else ""
 
 
 def number_text(value: Real) -> str:

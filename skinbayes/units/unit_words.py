@@ -247,15 +247,3 @@ def why_no_unit(word: str) -> str:
     """Why a word that is often taken for a unit is none, or an empty string."""
     small = word.lower()
     return NO_UNITS.get(_SAME.get(small, small), "")
-
-
-def unit_table() -> list[tuple[str, str, str]]:
-    """Symbols, prefixes and names of every unit, as docs/data.md lists them."""
-    return [
-        (
-            ", ".join(f"`{symbol}`" for symbol in unit.symbols),
-            " ".join(unit.prefixes),
-            ", ".join(unit.names),
-        )
-        for unit in UNIT_WORDS
-    ]

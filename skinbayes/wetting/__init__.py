@@ -1,5 +1,6 @@
 """Wet and drying skin: water, evaporation, capillary bridges, drying and humidity."""
 
+from skinbayes.wetting._gaps import VERSION_OF_BRIDGES
 from skinbayes.wetting.bridge_table import BridgeTable, bridge_table, skin_groups
 from skinbayes.wetting.capillary import CapillaryState, capillary_state, capillary_state_at_gap, kelvin_gap
 from skinbayes.wetting.drying import DryingCurve, DryingFeatures, drying_curve, drying_features
@@ -36,6 +37,7 @@ __all__ = [
     "LATENT_HEAT_OF_PAPER",
     "MOLECULE_DIAMETER",
     "STILL_AIR_COEFFICIENT",
+    "VERSION_OF_BRIDGES",
     "BridgeTable",
     "CapillaryState",
     "DryingCurve",

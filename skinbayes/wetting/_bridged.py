@@ -8,13 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray, IndexArray
 from skinbayes.contact import mean_separation
 from skinbayes.emulation.chebyshev import lobatto
 from skinbayes.wetting._curve import Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._solids import Solid
-from skinbayes.wetting._types import BoolArray, IndexArray
 from skinbayes.wetting.bridge_table import BridgeTable, skin_groups
 
 

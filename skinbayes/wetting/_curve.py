@@ -11,12 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray, IndexArray
 from skinbayes.emulation.chebyshev import clenshaw, coefficients, lobatto, series
 from skinbayes.wetting._family import GapFamily, gap_family
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._roots import smallest_root
-from skinbayes.wetting._types import BoolArray, IndexArray
 
 TERMS = {"gaussian": 32, "sharp": 96}  # Kelvin lengths of a curve; sharp gaps make it bumpy
 _BLOCK = 8192  # of a block that is solved at a time

@@ -10,11 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import FloatArray, IndexArray
 from skinbayes.emulation.chebyshev import coefficients, lobatto, polynomials, slopes
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._mixture import Filled, Mixture, cover, fill, folded_mean
-from skinbayes.wetting._types import IndexArray
 
 _GRID = np.geomspace(1e-4, 3.0, 16)  # gaps in units of the mean separation
 

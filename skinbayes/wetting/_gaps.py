@@ -17,6 +17,9 @@ from skinbayes.wetting._mixture import Mixture
 Closure = Literal["gaussian", "sharp"]
 Thing = TypeVar("Thing")
 
+VERSION_OF_BRIDGES = 1
+"""Of the numbers in tables of bridges and of gaps in humid air, which are kept on disk; raise it whenever these change."""
+
 
 @dataclass(frozen=True, eq=False)
 class GapSource:

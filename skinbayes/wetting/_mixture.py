@@ -2,48 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
-from scipy.special import erfcx
+from scipy.special import ndtr
 
 from skinbayes.arrays import FloatArray
 
 _PEAK = 1 / np.sqrt(2 * np.pi)
-_TURN, _DEGREE = 5.0, 18
 _FAR = 40.0  # widths from the centre beyond which nothing is left
 BLOCK = 1 << 12  # elements treated at a time: a few dozen arrays of them fit into the cache
-
-
-def _mills_polynomial() -> FloatArray:
-    """Coefficients of ``(t + 5) (1 − Φ(t))/φ(t)`` in ``k = 10/(t + 5) − 1``, highest order first; 2e-14 relative."""
-
-    def scaled(k: Any) -> Any:
-        t = 2 * _TURN / (k + 1) - _TURN
-        return np.sqrt(np.pi / 2) * erfcx(t / np.sqrt(2)) * (t + _TURN)
-
-    return np.array(chebyshev.cheb2poly(chebyshev.chebinterpolate(scaled, _DEGREE))[::-1], dtype=np.float64)
-
-
-_MILLS = _mills_polynomial()
-
-
-def upper_tail(t: FloatArray, density: FloatArray) -> FloatArray:
-    """``1 − Φ(t)`` of the standard normal distribution for t ≥ 0, given its density φ(t), dimensionless.
-
-    A polynomial of the Mills ratio, several times faster than an error function where φ is needed anyway.
-    """
-    inverse = 1 / (t + _TURN)
-    k = 2 * _TURN * inverse - 1
-    ratio = _MILLS[0] * k
-    for coefficient in _MILLS[1:-1]:
-        ratio += coefficient
-        ratio *= k
-    ratio += _MILLS[-1]
-    ratio *= inverse
-    ratio *= density
-    return ratio
 
 
 class Mixture(NamedTuple):
@@ -84,20 +52,19 @@ def folded_mean(centre: FloatArray, width: FloatArray) -> FloatArray:
     """Mean of folded normal distributions, m."""
     z = centre / width
     density = _PEAK * np.exp(-0.5 * np.square(z))
-    return centre * (1 - 2 * upper_tail(z, density)) + 2 * width * density
+    return centre * (1 - 2 * ndtr(-z)) + 2 * width * density
 
 
 def cover(mixture: Mixture, gap: FloatArray, slope: Mixture) -> tuple[FloatArray, FloatArray]:
-    """Area and area slope of `fill` alone, for a few thousand elements, in two thirds of its time."""
+    """Area and area slope of `fill` alone, for a few thousand elements; without it skin that hardens takes 1.3 times as long."""
     fraction, centre, width = mixture
     inverse = 1 / width
     z = centre * inverse
     s = np.minimum(gap[:, None] * inverse, z + _FAR)
     a, b = s - z, s + z
     pa, pb = (_PEAK * np.exp(-0.5 * np.square(x)) for x in (a, b))
-    area = upper_tail(np.abs(a), pa)
-    area = np.where(a > 0, 1 - area, area)
-    area -= upper_tail(b, pb)
+    # both are lower tails, whose difference keeps its digits
+    area = ndtr(a) - ndtr(-b)
     a *= pa
     b *= pb
     a += b
@@ -139,12 +106,10 @@ def _fill_block(mixture: Mixture, gap: FloatArray, slope: Mixture | None, found:
     s = np.minimum(gap[:, None] * inverse, z + _FAR)
     a, b = s - z, s + z
     pa, pb, pz = (_PEAK * np.exp(-0.5 * np.square(x)) for x in (a, b, z))
-    below = upper_tail(np.abs(a), pa)
-    below = np.where(a > 0, 1 - below, below)
-    above, out = upper_tail(b, pb), upper_tail(z, pz)
+    below, above = ndtr(a), ndtr(-b)
     area = below - above
     # ∫ u P du/width = z [Φ(a) + Φ(−b) − 2Φ(−z)] − [φ(a) + φ(b) − 2φ(z)]
-    centred = below + above - 2 * out
+    centred = below + above - 2 * ndtr(-z)
     both = pa + pb
     film = centre * centred - width * (both - 2 * pz)
     found[0] = (fraction * area).sum(axis=-1)

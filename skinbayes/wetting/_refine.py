@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.wetting._falling import falling_root
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._mixture import Filled, Mixture, fill
-from skinbayes.wetting._types import BoolArray
 
 _RUNG = 0.12  # of the ladder of ln p on which roots are told apart
 _FIRST_RUNGS = 3  # looked at before the next six, and so on

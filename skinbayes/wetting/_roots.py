@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.wetting._family import GapFamily
-from skinbayes.wetting._types import BoolArray
 
 _CLOSE = 1e-6  # change of ln p at which one more Newton step is enough
 _STRIDE = 4  # longest Newton step in units of the step of the map itself

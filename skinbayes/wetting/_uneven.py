@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import ndtr
 
-from skinbayes.arrays import FloatArray
-from skinbayes.wetting._mixture import upper_tail
-from skinbayes.wetting._types import IndexArray
+from skinbayes.arrays import FloatArray, IndexArray
 
 _WIDEST = 1e5  # standard deviation over the last edge beyond which nothing but the steps of the curve counts
 _FAR = 8.0  # standard deviations beyond which a normal distribution has nothing left
@@ -80,5 +79,4 @@ def _smoothed(distance: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Φ(t), and the average ``t Φ(t) + φ(t)`` of a ramp, at distances t of any sign."""
     bell = np.exp(-0.5 * np.square(distance)) / np.sqrt(2 * np.pi)
     away = np.abs(distance)
-    tail = upper_tail(away, bell)
-    return np.where(distance > 0, 1 - tail, tail), np.maximum(distance, 0.0) + (bell - away * tail)
+    return ndtr(distance), np.maximum(distance, 0.0) + (bell - away * ndtr(-away))

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import mean_separation
 from skinbayes.emulation import Box, Interpolant, Places, Progress, Tasks, counts_along, refined
 from skinbayes.emulation.chebyshev import values_at_nodes
@@ -22,7 +22,6 @@ from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.wetting._curve import REFERENCE, TERMS, Curve, solve_curve
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._solids import Solid, scale_modulus, shape_groups, solid_of_groups
-from skinbayes.wetting._types import BoolArray
 
 SURFACE_GROUPS = ("hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
 """Groups of a self-affine spectrum, the wavevectors as logarithms."""

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray, floats
 from skinbayes.contact import (
     AREA_CORRECTION,
     ElasticSolid,
@@ -21,7 +21,6 @@ from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._curve import solve_curve
 from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
 from skinbayes.wetting._refine import filled_at, refine_films, roots_at_gaps
-from skinbayes.wetting._types import BoolArray
 
 Branch = Literal["approach", "retreat"]
 
@@ -306,7 +305,7 @@ class _Solved(NamedTuple):
 
 def cosine_sum(contact_angle_skin: ArrayLike, contact_angle_counterface: ArrayLike) -> FloatArray:
     """cos θ1 + cos θ2; nan for impossible angles."""
-    angles = arrays(contact_angle_skin, contact_angle_counterface)
+    angles = floats(contact_angle_skin, contact_angle_counterface)
     first, second = (np.cos(np.where((x >= 0) & (x <= np.pi), x, np.nan)) for x in angles)
     # two right angles, or 80 and 100 degrees, sum to 0 but for rounding
     return np.where(np.abs(first + second) < _ROUNDING, 0.0, first + second)
@@ -325,7 +324,7 @@ def _flatten(
 ) -> _Case:
     if closure not in CLOSURES:
         raise InputError(f"closure is {closure!r}, but must be one of {', '.join(map(repr, CLOSURES))}.")
-    films, pressure, tension, gamma = arrays(wanted, nominal_pressure, surface_tension, area_correction)
+    films, pressure, tension, gamma = floats(wanted, nominal_pressure, surface_tension, area_correction)
     with np.errstate(all="ignore"):
         wetting = np.maximum(cosine_sum(contact_angle_skin, contact_angle_counterface), 0.0)
         wetting_tension = np.where((tension >= 0) & (tension < np.inf), tension, np.nan) * wetting

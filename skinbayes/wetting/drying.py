@@ -15,6 +15,7 @@ from skinbayes.wetting.film_contact import FilmContact
 _SEARCH = 192
 _NO_SPREAD = 1e-12  # m
 _GONE = -40.0  # standard deviations below 0 at which nothing is left of a film
+_EVEN = 1 / 3  # of a film that its spread can be: beyond, more of it would lie on the track than there is
 _NO_PEAK = 1e-6  # height of a peak over the wet plateau, relative, below which there is none
 
 
@@ -85,7 +86,8 @@ def drying_curve(
     frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     nominal_pressure : p0, Pa, > 0, batch shape
     film_spread : standard deviation of the film over the track, m, ≥ 0, batch shape. It smooths where skin floods and
-        falls dry; without it friction has a kink and a jump there.
+        falls dry; without it friction has a kink and a jump there. A film that is thin when it is laid down is more even, to a
+        third of itself: it cannot lie anywhere thicker than there is water for, and none at all leaves the skin dry.
 
     Returns
     -------
@@ -119,6 +121,7 @@ def drying_curve(
         possible = (film >= 0) & (rate >= 0) & (rate < np.inf) & (spread >= 0) & (spread < np.inf)
         elapsed = np.maximum(times - start, 0.0)
         mean = np.where(possible, film - np.where(rate > 0, rate * elapsed, 0.0 * np.isnan(elapsed)), np.nan)
+        spread = np.minimum(spread, _EVEN * film)
         width = np.maximum(spread, _NO_SPREAD)
         wet = times >= start
         dry_area = np.asarray(contact.dry_area)[..., None]
@@ -163,7 +166,8 @@ def drying_features(
     contact : of `film_contact`, batch shape
     frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     nominal_pressure : p0, Pa, > 0, batch shape
-    film_spread : standard deviation of the film over the track, m, ≥ 0, batch shape
+    film_spread : standard deviation of the film over the track, m, ≥ 0, batch shape; that of a film laid down thick enough for
+        it, see `drying_curve`
 
     Returns
     -------

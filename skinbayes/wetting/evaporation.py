@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.wetting.water import saturation_vapour_pressure
 
 LATENT_HEAT_OF_PAPER = 2.272e6
@@ -54,7 +54,7 @@ def evaporation_rate_from_pressures(
     >>> print(f"{evaporation_rate_from_pressures(5.6e3, 1.15e3):.3e}")
     1.743e-07
     """
-    surface, air, speed, heat = arrays(vapour_pressure_surface, vapour_pressure_air, air_speed, latent_heat)
+    surface, air, speed, heat = floats(vapour_pressure_surface, vapour_pressure_air, air_speed, latent_heat)
     with np.errstate(all="ignore"):
         possible = (surface >= 0) & (air >= 0) & (speed >= 0) & (heat > 0)
         rate = (surface - air) * (STILL_AIR_COEFFICIENT + AIR_SPEED_COEFFICIENT * speed) / heat
@@ -142,7 +142,7 @@ def film_of_droplet(
     >>> print(f"{width:.2e} {film_of_droplet(50e-9, 0.08, contact_width=width):.3e}")
     9.65e-03 6.473e-05
     """
-    volume, length, width = arrays(droplet_volume, stroke_length, contact_width)
+    volume, length, width = floats(droplet_volume, stroke_length, contact_width)
     with np.errstate(all="ignore"):
         possible = (volume >= 0) & (length > 0) & (width > 0)
         return np.where(possible, volume / (length * width), np.nan)[()]

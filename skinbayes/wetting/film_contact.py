@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray, floats
 from skinbayes.contact import (
     AREA_CORRECTION,
     ElasticSolid,
@@ -24,7 +24,6 @@ from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._bridged import Bridged
 from skinbayes.wetting._gaps import Closure, GapSource, batch_shapes, map_skin, map_spectrum
-from skinbayes.wetting._types import BoolArray
 from skinbayes.wetting._uneven import uneven_average
 from skinbayes.wetting.bridge_table import BridgeTable
 from skinbayes.wetting.capillary import cosine_sum
@@ -163,17 +162,10 @@ def film_contact(
         )
     if young_modulus_layer_dry is not None and not isinstance(skin, LayeredSkin):
         raise InputError("young_modulus_layer_dry is given, but the solid has no layer that could harden.")
-    arguments = [
-        np.asarray(x, dtype=np.float64)
-        for x in (
-            nominal_pressure,
-            surface_tension,
-            contact_angle_skin,
-            contact_angle_counterface,
-            area_correction,
-        )
-    ]
-    limit, floor, power = arrays(yield_stress, film_floor, hardening_sharpness)
+    arguments = floats(
+        nominal_pressure, surface_tension, contact_angle_skin, contact_angle_counterface, area_correction
+    )
+    limit, floor, power = floats(yield_stress, film_floor, hardening_sharpness)
     dry = None if young_modulus_layer_dry is None else np.asarray(young_modulus_layer_dry, dtype=np.float64)
     half = None if hardening_film is None else np.asarray(hardening_film, dtype=np.float64)
     load, tension, first, second, gamma = arguments

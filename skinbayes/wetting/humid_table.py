@@ -17,14 +17,13 @@ import numpy as np
 from scipy.ndimage import map_coordinates, spline_filter
 from scipy.special import ndtr
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Box, Places, Progress, Tasks
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum, SelfAffineSpectrum
 from skinbayes.wetting._falling import falling_root
 from skinbayes.wetting._gaps import GapSource
 from skinbayes.wetting._solids import Solid, scale_modulus, shape_groups, solid_of_groups
-from skinbayes.wetting._types import BoolArray
 
 _STEPS = {"load": 0.15, "gap": 0.25, "stiffness": 0.2, "layer_thickness": 0.3}
 _ROOM = 3  # nodes beyond the ends of an axis, where a spline is poor

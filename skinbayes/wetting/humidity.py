@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.contact import AREA_CORRECTION, ElasticSolid
 from skinbayes.roughness.spectrum import PowerSpectrum
 from skinbayes.wetting._gaps import Closure
@@ -48,7 +48,7 @@ def kelvin_radius(relative_humidity: ArrayLike, temperature: ArrayLike) -> Float
     >>> print(f"{kelvin_radius(0.5, 293.15):.4e} {kelvin_radius(0.9, 293.15):.4e}")
     7.7704e-10 5.1120e-09
     """
-    humidity, kelvin = arrays(relative_humidity, temperature)
+    humidity, kelvin = floats(relative_humidity, temperature)
     with np.errstate(all="ignore"):
         humidity = np.where((humidity >= 0) & (humidity <= 1), humidity, np.nan)
         work = BOLTZMANN_CONSTANT * kelvin * np.abs(np.log(humidity))
@@ -184,7 +184,7 @@ def capillary_state_in_humid_air(
     >>> print(np.log10(state.relative_contact_area).round(2))
     [-4.09 -4.13]
     """
-    humidity, kelvin = arrays(relative_humidity, temperature)
+    humidity, kelvin = floats(relative_humidity, temperature)
     with np.errstate(all="ignore"):
         each, first, second = (
             np.asarray(x, dtype=np.float64)[..., None]
@@ -256,9 +256,8 @@ def young_modulus_at_humidity(
     >>> print((moduli / 1e6).round(1))
     [1000.   337.2   83.7   12.5    7. ]
     """
-    humidity, dry, wet, middle, power = arrays(
-        relative_humidity, young_modulus_dry, young_modulus_wet, transition_humidity, sharpness
-    )
+    humidity, dry, wet = floats(relative_humidity, young_modulus_dry, young_modulus_wet)
+    middle, power = floats(transition_humidity, sharpness)
     with np.errstate(all="ignore"):
         possible = (humidity >= 0) & (humidity <= 1) & (dry > 0) & (wet > 0)
         possible = possible & (middle > 0) & (middle < 1) & (power > 0)

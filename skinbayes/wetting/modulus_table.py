@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from skinbayes.arrays import ArrayLike, FloatArray, arrays
+from skinbayes.arrays import ArrayLike, FloatArray, floats
 from skinbayes.errors import InputError
 
 
@@ -42,7 +42,7 @@ def young_modulus_from_table(
     >>> print((moduli / 1e6).round(1))
     [1000.   400.    99.3    nan]
     """
-    places, moduli = arrays(table_humidity, table_modulus)
+    places, moduli = floats(table_humidity, table_modulus)
     if places.ndim != 1 or places.shape != moduli.shape or places.size < 2:
         raise InputError(
             f"table of moduli: {places.size} humidities and {moduli.size} moduli; expected as many of each, two at least"

@@ -13,6 +13,12 @@ WITH_EXAMPLES = [m for m in modules() if ">>> " in modules()[m].read_text(encodi
 
 @pytest.mark.parametrize("module", WITH_EXAMPLES)
 def test_examples(module: str) -> None:
-    result = doctest.testmod(import_module(module), optionflags=doctest.NORMALIZE_WHITESPACE)
-    assert result.attempted > 0
-    assert result.failed == 0
+    """The example of a method goes on from that of its class."""
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    known: dict[str, dict[str, object]] = {}
+    for test in sorted(doctest.DocTestFinder().find(import_module(module)), key=lambda test: test.name):
+        test.globs |= known.get(test.name.rpartition(".")[0], {})
+        runner.run(test, clear_globs=False)
+        known[test.name] = test.globs
+    assert runner.tries > 0
+    assert runner.failures == 0

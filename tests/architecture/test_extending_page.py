@@ -72,19 +72,32 @@ def test_the_example_runs_as_it_stands(title: str, tmp_path: Path) -> None:
     run(f"{BLOCKS[title]}\n{textwrap.dedent(AFTER[title])}", tmp_path)
 
 
-def wheel_of(module: str, entry: str, folder: Path) -> Path:
-    """A wheel of a package of one module, as a build tool makes it."""
-    path = folder / "coated_skin-1.0-py3-none-any.whl"
-    info = "coated_skin-1.0.dist-info"
+def install(modules: dict[str, str], entry_points: str, folder: Path) -> str:
+    """Install a package, as a build tool makes its wheel; the beginning of a program that finds it."""
+    path, site = folder / "of_ones_own-1.0-py3-none-any.whl", folder / "site"
+    info = "of_ones_own-1.0.dist-info"
     with zipfile.ZipFile(path, "w") as wheel:
-        wheel.writestr("coated_skin.py", module)
-        wheel.writestr(f"{info}/METADATA", "Metadata-Version: 2.1\nName: coated-skin\nVersion: 1.0\n")
+        for name, text in modules.items():
+            wheel.writestr(f"{name}.py", text)
+        wheel.writestr(f"{info}/METADATA", "Metadata-Version: 2.1\nName: of-ones-own\nVersion: 1.0\n")
         wheel.writestr(
             f"{info}/WHEEL", "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
         )
-        wheel.writestr(f"{info}/entry_points.txt", f"[skinbayes.forward_models]\n{entry}\n")
+        wheel.writestr(f"{info}/entry_points.txt", entry_points)
         wheel.writestr(f"{info}/RECORD", "")
-    return path
+    installed = subprocess.run(
+        [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--quiet", "--target", site, path],
+        capture_output=True, text=True, timeout=300,
+    )  # fmt: skip
+    assert installed.returncode == 0, installed.stderr
+    return f"import sys; sys.path.insert(0, {str(site)!r}); "
+
+
+def command(start: str, words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", f"{start}from skinbayes.cli import main; sys.argv[1:] = {words}; main()"],
+        cwd=folder, capture_output=True, text=True, timeout=300,
+    )  # fmt: skip
 
 
 MODEL_FILE = """
@@ -113,26 +126,70 @@ def test_an_installed_package_offers_its_model_to_the_command_line(
     entry: str, status: int, tmp_path: Path
 ) -> None:
     module = BLOCKS["A forward model"].replace("sb.register_forward_model(MODEL)\n", "")
-    wheel, site = wheel_of(module, entry, tmp_path), tmp_path / "site"
-    installed = subprocess.run(
-        [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--quiet", "--target", site, wheel],
-        capture_output=True, text=True, timeout=300,
-    )  # fmt: skip
-    assert installed.returncode == 0, installed.stderr
+    start = install({"coated_skin": module}, f"[skinbayes.forward_models]\n{entry}\n", tmp_path)
     (tmp_path / "cream.toml").write_text(MODEL_FILE, encoding="utf-8")
     (tmp_path / "cream.csv").write_text(
         "cream_mass_per_area [mg/cm^2],friction_coefficient [1]\n0,0.5\n1,0.8\n", encoding="utf-8"
     )
-    start = f"import sys; sys.path.insert(0, {str(site)!r}); from skinbayes.cli import main; "
-    for command in (["check", "cream.toml"], ["show", "cream.csv"], ["check", "forearm-glass"]):
-        done = subprocess.run(
-            [sys.executable, "-c", f"{start}sys.argv[1:] = {command}; main()"],
-                cwd=tmp_path, capture_output=True, text=True, timeout=300,
-        )  # fmt: skip
-        expected = 0 if command[1] != "cream.toml" else status
+    for words in (["check", "cream.toml"], ["show", "cream.csv"], ["check", "forearm-glass"]):
+        done = command(start, words, tmp_path)
+        expected = 0 if words[1] != "cream.toml" else status
         assert done.returncode == expected, done.stderr
         if expected:
             assert (
-                "the forward model 'coated-skin' is offered by the installed package 'coated-skin', but cannot be used"
+                "the forward model 'coated-skin' is offered by the installed package 'of-ones-own', but cannot be used"
                 in done.stderr
             )
+
+
+ENGINES_PAGE = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8")
+CONSTANT = """
+title = "Readings with long tails"
+forward = "constant"
+
+[data]
+file = "readings.csv"
+observable = "friction_coefficient"
+
+[parameters]
+typical_friction_coefficient = { uniform = [0, 2] }
+
+[noise]
+family = "laplace"
+noise_scale = 0.1
+"""
+
+
+def test_an_installed_package_offers_noise_and_an_engine(tmp_path: Path) -> None:
+    """Those of the pages, one that is not there, one under a name that is taken, one of another name than its entry point."""
+    noise = re.sub(
+        r"sb\.register_noise\((sb\.NoiseFamily\(.*\n\))\)",
+        r"NOISE = \1",
+        BLOCKS["A noise family"],
+        flags=re.S,
+    )
+    engine = re.search(r"```python\n(.*?class PriorImportance.*?)\n\nsb\.register_engine", ENGINES_PAGE, re.S)
+    assert engine is not None and "NOISE = " in noise
+    entries = [
+        "[skinbayes.noise_families]", "laplace = noise:NOISE", "cauchy = noise:NOISE", "gaussian = noise:NOISE", "",
+        "[skinbayes.engines]", "prior-importance = engine:ENGINE", "a-class = engine:PriorImportance",
+        "gone = engine:MISSING", "nested = engine:ENGINE",
+    ]  # fmt: skip
+    modules = {"noise": noise, "engine": f"{engine[1]}\n\nENGINE = PriorImportance()\n"}
+    start = install(modules, "\n".join(entries), tmp_path)
+    (tmp_path / "mine.toml").write_text(CONSTANT, encoding="utf-8")
+    (tmp_path / "cauchy.toml").write_text(CONSTANT.replace("laplace", "cauchy"), encoding="utf-8")
+    (tmp_path / "readings.csv").write_text("friction_coefficient [1]\n0.5\n0.6\n0.9\n", encoding="utf-8")
+    done = command(start, ["fit", "mine.toml", "--engine", "prior-importance", "--ess", "100"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    for words, said in (
+        (["check", "cauchy.toml"], "noise.family: the noise family 'cauchy' is offered by the installed package 'of-ones-own'"),
+        (["fit", "mine.toml", "--engine", "gone"], "engine 'gone' is offered by the installed package 'of-ones-own', but cannot"),
+        (["fit", "mine.toml", "--engine", "a-class"], "an object with run"),
+        (["fit", "mine.toml", "--engine", "prior-imports"], "did you mean 'prior-importance'"),
+        (["fit", "mine.toml", "--engine", "nested", "--engine-option", "live_points=1"], "at least 20"),
+    ):  # fmt: skip
+        refused = command(start, words, tmp_path)
+        assert refused.returncode == 2 and said in refused.stderr and "Traceback" not in refused.stderr
+        assert len(refused.stderr.splitlines()) == 1
+    assert command(start, ["check", "forearm-glass"], tmp_path).returncode == 0  # the others disturb nobody

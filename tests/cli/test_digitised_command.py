@@ -179,7 +179,7 @@ REFUSED: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "pixels and stated errors": (
         ("wpd.json", *AXES, *ERRORS, "--set-name", "circles", "--pixel-error", "1", "-o", "n.csv"), ("one or the other",)
     ),
-    "negative pixels": (("wpd.json", *AXES, "--pixel-error", "-1", "-o", "n.csv"), ("expected a number of pixels > 0",)),
+    "negative pixels": (("wpd.json", *AXES, "--pixel-error", "-1", "-o", "n.csv"), ("--pixel-error", "x>0")),
     "odd constant": (
         ("circles.csv", *AXES, *ERRORS, "--constant", "sphere_radius", "-o", "n.csv"), ("expected NAME=VALUE",)
     ),

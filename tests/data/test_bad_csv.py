@@ -56,7 +56,11 @@ CORPUS: dict[str, tuple[bytes | str, tuple[str, ...]]] = {
     ),
     "semicolons, decimal comma and thousands": (
         HEADER.replace(",", ";") + "A;1.234,5;0,5\n",
-        ("line 2", "'1.234,5'", "separated thousands"),
+        (
+            "line 2",
+            "'1.234,5'",
+            "separated thousands; write 1234.5 (1234,5 where the file has decimal commas)",
+        ),
     ),
     "two separators": ("a;b [N],c [1]\n1;2,3\n1,2;3\n", ("line 1", "commas and semicolons", "double quotes")),
     "quotes do not match": (HEADER + '"A,1,0.5\n', ("line 2", "quotation marks")),

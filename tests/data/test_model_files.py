@@ -280,12 +280,12 @@ CORPUS: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     ),
     # derived quantities and conditions
     "derived without product": (GOOD + "[derived.x]\nmeaning = 'y'\n", ("derived.x.product", "is missing")),
-    "derived of nothing": (GOOD + "[derived.x]\nproduct = {}\n", ("derived.x", "names no factor")),
+    "derived of nothing": (GOOD + "[derived.x]\nproduct = {}\n", ("derived.x", "at least 1 item")),
     "derived of something unknown": (
         GOOD + "[derived.x]\nproduct = { yield_stres = 1 }\n", ("derived.x", "yield_stres", "'yield_stress'"),
     ),
     "derived power a word": (GOOD + "[derived.x]\nproduct = { yield_stress = 'two' }\n", ("derived.x", "'two'")),
-    "derived power nan": (GOOD + "[derived.x]\nproduct = { yield_stress = nan }\n", ("derived.x", "finite")),
+    "derived power nan": (GOOD + "[derived.x]\nproduct = { yield_stress = nan }\n", ("derived.x", "found nan", "-100")),
     "derived rows unknown": (
         GOOD + "[derived.x]\nproduct = { yield_stress = 1 }\nrows = { liquid = ['wine'] }\n", ("derived.x.rows", "wine"),
     ),

@@ -13,7 +13,7 @@ from mutated_models import SHIPPED, mutated, to_toml
 from skinbayes.cli.main import cli
 from skinbayes.errors import InputError
 from skinbayes.forward import stribeck_table
-from skinbayes.lubrication import FilmTable, build_film_table
+from skinbayes.lubrication import FilmTable, FilmTablePlan, build_film_table
 from skinbayes.roughness import named_surface
 
 COMMANDS = (["show"], ["template"], ["predict"], ["prior", "--draws", "100"], ["check"])
@@ -38,7 +38,7 @@ def one_film_table(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     }  # fmt: skip
     ranges = {name: (value, value) for name, value in ball.items()}
     table: FilmTable = build_film_table(
-        ranges, named_surface("paper_reference"), speeds=8, nodes=32, checked=0
+        FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), speeds=8, nodes=32, checked=0)
     )
     monkeypatch.setattr(stribeck_table, "build_film_table", lambda *a, **k: table)
     monkeypatch.setenv("SKINBAYES_CACHE", "")

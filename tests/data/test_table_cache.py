@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skinbayes.emulation import FOLDER, Unfinished, cache_folder, cached
+from skinbayes.emulation import FOLDER, Box, Unfinished, cache_folder, cached, kept_table
 from skinbayes.emulation import cache as table_cache
+from skinbayes.forward import Tables, forward_model
 
 
 @pytest.fixture
@@ -158,3 +159,60 @@ def test_the_default_is_the_users_cache(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.delenv(FOLDER, raising=False)
     folder = cache_folder()
     assert folder is not None and "skinbayes" in folder.parts
+
+
+def test_a_table_that_cannot_be_is_kept_as_such(folder: Path) -> None:
+    asked: list[Unfinished] = []
+
+    def build(unfinished: Unfinished) -> Box | None:
+        asked.append(unfinished)
+        return None if len(asked) == 1 else Box({"a": (0.0, 1.0)})
+
+    for _ in range(3):
+        assert kept_table("box", {"a": 1}, Box, build) is None
+    assert len(asked) == 1
+    for _ in range(2):
+        box = kept_table("box", {"a": 2}, Box, build)
+        assert box is not None and box.varying == ("a",)
+    assert len(asked) == 2
+    assert kept_table("box", None, Box, build) is not None and len(asked) == 3
+
+
+SKIN = {
+    "young_modulus_bulk": 2e4, "layer_thickness": 2e-5, "rms_height": 22.4e-6, "hurst_exponent": 0.78, "wavevector_min": 1e3,
+    "wavevector_rolloff": 6.345e3, "wavevector_max": 1e9, "nominal_pressure": 6830.0, "frictional_shear_stress": 15e6,
+    "contact_angle_skin": 1.4, "contact_angle_counterface": 0.0,
+}  # fmt: skip
+AIR = {"relative_humidity": 0.6, "temperature": 293.15, "young_modulus_layer": 7e6}
+WATER = {
+    "time": 300.0, "wetting_time": 30.0, "initial_film": 9e-5, "evaporation_rate": 1.7e-7, "surface_tension": 0.0727,
+    "young_modulus_layer": 7e6, "young_modulus_layer_dry": 1e9,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "conditions", "module"),
+    [("humid-air", AIR, "humid_air_table.humid_table"), ("drying", WATER, "drying_table.bridge_table")],
+)
+def test_tables_of_bridges_are_kept(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, conditions: dict[str, float], module: str
+) -> None:
+    model, given = forward_model(name), SKIN | conditions
+    ranges = {key: (value, value) for key, value in (given | model.defaults(given)).items()}
+    ranges |= {"young_modulus_layer": (6.5e6, 7.5e6)}
+    inputs = {key: np.array([[low]]) for key, (low, _) in ranges.items()}
+    inputs["young_modulus_layer"] = np.array([[6.7e6], [7.2e6]])
+    assert model.prepare is not None
+    found = []
+    for _ in range(2):
+        ready = model.prepare(model, ranges, Tables(), None, 1)
+        assert "interpolated" in ready.accuracy
+        found.append(ready.evaluate(inputs, Tables()))
+        # from now on there is nothing to build a table with
+        monkeypatch.setattr(f"skinbayes.forward.{module}", None)
+    assert len(list(folder.glob("*.table"))) == 1
+    for observable, values in found[0].items():
+        np.testing.assert_array_equal(values, found[1][observable])
+    # another box is another table
+    with pytest.raises(TypeError):
+        model.prepare(model, ranges | {"young_modulus_layer": (6e6, 7.5e6)}, Tables(), None, 1)

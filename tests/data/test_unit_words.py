@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from skinbayes.errors import InputError
-from skinbayes.units import convert_array, format_quantity, parse_quantity, unit_table
+from skinbayes.units import convert_array, format_quantity, parse_quantity
+from skinbayes.units.unit_words import UNIT_WORDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "data.md"
 
@@ -161,12 +162,27 @@ def test_says_what_may_have_been_meant(text: str, unit: str, advice: str) -> Non
         ("1'000", "separated thousands; write 1000"),
         ("1.000,5", "separated thousands; write 1000.5"),
         ("1,000.5", "separated thousands; write 1000.5"),
+        ("1.234.567,8", "separated thousands; write 1234567.8"),
+        ("1.234.567", "separated thousands; write 1234567"),
+        ("1 234,5", "separated thousands; write 1234.5"),
     ],
 )
-def test_commas_and_thousands(number: str, advice: str) -> None:
+@pytest.mark.parametrize("blank", [" ", ""])
+def test_commas_and_thousands(number: str, advice: str, blank: str) -> None:
     with pytest.raises(InputError) as caught:
-        parse_quantity(f"{number} mN", "N", where="x")
+        parse_quantity(f"{number}{blank}mN", "N", where="x")
     assert advice in str(caught.value)
+
+
+def unit_table() -> list[tuple[str, str, str]]:
+    return [
+        (
+            ", ".join(f"`{symbol}`" for symbol in unit.symbols),
+            " ".join(unit.prefixes),
+            ", ".join(unit.names),
+        )
+        for unit in UNIT_WORDS
+    ]
 
 
 def test_the_page_lists_every_unit() -> None:

@@ -80,7 +80,7 @@ def test_a_model_that_misses_the_data_loses(fits: dict[str, Fit]) -> None:
     assert any("'off'" in sentence and "better" in sentence for sentence in result.sentences())
     assert sum(model.weight for model in result.models) == pytest.approx(1.0, abs=1e-9)
     document = result.to_dict()
-    assert document["rows"] == 11 and document["models"][0]["log_evidence"] is None
+    assert document["rows"] == 11 and document["models"][0]["elpd_difference"] == 0.0
 
 
 def test_standard_error_of_a_difference(fits: dict[str, Fit]) -> None:
@@ -128,9 +128,7 @@ def test_stacking_of_far_away_densities(shift: float) -> None:
 def model(
     name: str, difference: float, error: float, unreliable: int = 0, converged: bool = True
 ) -> ComparedModel:
-    return ComparedModel(
-        name, None, None, -5.0 + difference, 1.0, 2.0, difference, error, 0.5, unreliable, converged
-    )
+    return ComparedModel(name, -5.0 + difference, 1.0, 2.0, difference, error, 0.5, unreliable, converged)
 
 
 @pytest.mark.parametrize(

@@ -65,8 +65,15 @@ def test_an_ensemble_does_not_depend_on_how_many_others_there_are(serial):
     assert np.array_equal(fewer.positions, serial.positions[:2])
 
 
+class RowByRow(UnitGaussian):
+    """A density that is asked for each walker by itself."""
+
+    def log_density(self, position):
+        return np.concatenate([super(RowByRow, self).log_density(row[np.newaxis]) for row in position])
+
+
 def test_walker_by_walker_is_vectorised(serial):
-    assert same(serial, run_ensembles(UnitGaussian(3), SamplerOptions(seed=4, vectorize=False, **SHORT)))
+    assert same(serial, run_ensembles(RowByRow(3), SamplerOptions(seed=4, **SHORT)))
 
 
 def test_processes_are_serial(serial):
@@ -91,9 +98,9 @@ def test_block_length_does_not_change_draws(serial):
 def test_pieces_of_a_block_are_the_block():
     target = UnitGaussian(3)
     start = initial_states(target, SamplerOptions(seed=4, **SHORT))[0]
-    whole = advance(target, start, 10, True, default_moves)
-    first = advance(target, start, 3, True, default_moves)
-    second = advance(target, first.end, 7, True, default_moves)
+    whole = advance(target, start, 10, default_moves)
+    first = advance(target, start, 3, default_moves)
+    second = advance(target, first.end, 7, default_moves)
     assert np.array_equal(whole.positions, np.concatenate((first.positions, second.positions)))
     assert np.array_equal(whole.random_state[1], second.random_state[1])
     assert whole.random_state[2:] == second.random_state[2:]
@@ -104,7 +111,7 @@ def test_nan_and_infinity_count_as_impossible():
     assert np.isfinite(chains.log_density).all()
     assert np.abs(chains.positions[..., 0]).max() <= 2.0
     assert chains.invalid > 0
-    density = Density(Faulty(2), vectorize=True)
+    density = Density(Faulty(2))
     value = density(np.array([[3.0, 0.0], [-3.0, 0.0], [0.0, 0.0]]))
     assert value.tolist() == [-np.inf, -np.inf, 0.0]
     assert (density.evaluations, density.invalid) == (3, 2)

@@ -16,7 +16,7 @@ from skinbayes.errors import InputError
 from skinbayes.fit import Fit, sample
 from skinbayes.plot import plot_effects, plot_levels, plot_profile, plot_residuals
 from skinbayes.plot.profile import profile_abscissas
-from skinbayes.plot.rows import group_columns, row_abscissa, row_predictions, telling_columns
+from skinbayes.plot.rows import group_columns, row_predictions, telling_columns, varying
 from skinbayes.problem import load_problem
 
 
@@ -112,13 +112,13 @@ def test_residuals_stand_against_abscissa_and_load() -> None:
 
 def test_abscissa_is_speed_times_viscosity_of_each_row() -> None:
     problem = load_problem("finger-descriptive")
-    found = row_abscissa(problem, problem.prior_medians())
+    found = varying(Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 20)))
     assert found is not None and found[0] == "speed_viscosity_product"
     values = problem.conditions.values
     np.testing.assert_array_equal(found[1], values["viscosity"] * values["sliding_speed"])
     # without a curve to lie on, data are drawn against the condition that varies most
     plain = load_problem("finger-water")
-    found = row_abscissa(plain, plain.prior_medians())
+    found = varying(Fit.from_draws(plain, plain.draw_prior(np.random.default_rng(1), 20)))
     assert found is not None and found[0] == "normal_force"
 
 

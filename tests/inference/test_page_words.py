@@ -13,7 +13,8 @@ from made_up_fit import made_up_fit
 from skinbayes.diagnose import identify
 from skinbayes.diagnose.rule import verdict
 from skinbayes.fit import Fit
-from skinbayes.plot.numbers import fraction, interval, percent
+from skinbayes.phrases import percent
+from skinbayes.plot.numbers import fraction, interval
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import digest, opening, quality, remarks, sentences
 from skinbayes.report.tables import derived_rows
@@ -176,10 +177,10 @@ def test_rows_of_one_median_keep_their_interval() -> None:
     draws = np.ones((4, 300, 12))
     draws[:, :60] = np.linspace(0.02, 0.06, 60)[:, np.newaxis]
     fit = with_posterior(fit_of(), plastic_fraction=by_row("plastic_fraction", draws))
-    (row,) = [row for row in derived_rows(fit)[0] if row.name.startswith("plastic fraction")]
+    (row,) = [row for row in derived_rows(fit)[0] if row["name"].startswith("plastic fraction")]
     low, high = np.quantile(draws, [0.05, 0.95])
-    assert row.median == "1 in all rows"
-    assert row.interval == interval(low, high, "1") and low < 0.1 < high
+    assert row["median"] == "1 in all rows"
+    assert row["interval"] == interval(low, high, "1") and low < 0.1 < high
 
 
 def test_more_effective_draws_than_stored_are_explained() -> None:

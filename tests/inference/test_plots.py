@@ -14,6 +14,7 @@ from scipy import stats
 
 import skinbayes.plot
 from skinbayes.fit import Fit, sample
+from skinbayes.phrases import number
 from skinbayes.plot import (
     plot_corner,
     plot_predictive,
@@ -22,7 +23,7 @@ from skinbayes.plot import (
     plot_profile,
     plot_trace,
 )
-from skinbayes.plot.numbers import number, quantity
+from skinbayes.plot.numbers import quantity
 from skinbayes.plot.predictive import observed_values
 from skinbayes.plot.prior_posterior import smooth_density
 from skinbayes.plot.scales import round_values
@@ -191,7 +192,7 @@ def test_profile_of_many_rows_shows_lowest_middle_and_highest() -> None:
 
 def test_profile_without_problem_is_a_sentence() -> None:
     fit = replace(short_fit("forearm-glass"), problem=None)
-    assert "no curve can be computed" in texts(plot_profile(fit)).replace("\n", " ")
+    assert "nothing can be computed" in texts(plot_profile(fit)).replace("\n", " ")
 
 
 @pytest.mark.parametrize("text", ["$x", "a$b$c", r"\frac{", "σ_f/(E0 s)", "x_$y$", "E0 $", "^_", "$$"])

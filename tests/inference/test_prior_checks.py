@@ -17,7 +17,6 @@ def test_contraction_is_measured_in_the_unconstrained_coordinate():
     (update,) = prior_updates(["a"], prior, posterior, log)
     assert update.contraction == pytest.approx(0.75, abs=0.02)  # 1 − 0.5²; four standard errors
     assert update.verdict == "updated"
-    assert "% of the prior's" in update.sentence()
 
 
 def test_verdicts():
@@ -29,9 +28,6 @@ def test_verdicts():
     assert moved.verdict == "updated"  # the median is at the prior's 97.7 %
     assert moved.prior_quantile == pytest.approx(stats.norm.cdf(2.0), abs=0.01)
     assert (above.verdict, below.verdict) == ("contradicted", "contradicted")
-    assert "above a value that the prior gave" in above.sentence()
-    assert "below a value that the prior gave no chance" in below.sentence()
-    assert "what is shown is the prior" in still.sentence()
 
 
 def test_ridges_and_their_exponents():
@@ -44,11 +40,8 @@ def test_ridges_and_their_exponents():
     assert {(ridge.first, ridge.second) for ridge in found} == {("a", "b"), ("a", "x"), ("b", "x")}
     pair = next(ridge for ridge in found if (ridge.first, ridge.second) == ("a", "b"))
     assert pair.exponent == pytest.approx(-2.0, rel=0.01)
-    assert pair.spread == pytest.approx(0.05, rel=0.1)
-    assert "b · a^2 is known within a factor 1.1" in pair.sentence()
     linear = next(ridge for ridge in found if ridge.second == "x")
     assert not linear.logarithmic
-    assert "factor" not in linear.sentence()
     assert ridges(["a", "c"], draws[:, [0, 2]]) == ()
 
 
@@ -58,4 +51,3 @@ def test_a_parameter_can_be_moved_without_being_narrowed() -> None:
     posterior = rng.normal([-1.6, 0.3], 1.0, size=(4000, 2))
     moved, still = prior_updates(["a", "b"], prior, posterior)
     assert (moved.verdict, still.verdict) == ("moved", "not updated")
-    assert "below" in moved.sentence() and "not narrowed" in moved.sentence()

@@ -171,12 +171,14 @@ def test_refusals_say_what_was_expected(family, arguments, words):
 def test_truncation_renormalises(family, arguments, lower, upper):
     whole = make_prior(family, arguments)
     cut = whole.truncated(lower, upper)
-    mass = whole.mass_within(lower, upper)
+    mass, _ = integrate.quad(
+        lambda x: float(np.exp(whole.log_density(x))), cut.lower, cut.upper, epsrel=1e-12
+    )
     low, high = (cut.quantile(q) for q in (1e-6, 1 - 1e-6))
     area, _ = integrate.quad(lambda x: float(np.exp(cut.log_density(x))), low, high, epsrel=1e-10, limit=200)
     assert area == pytest.approx(1 - 2e-6, abs=1e-8)
     inside = np.linspace(float(low), float(high), 9)
-    np.testing.assert_allclose(cut.log_density(inside), whole.log_density(inside) - np.log(mass), rtol=1e-12)
+    np.testing.assert_allclose(cut.log_density(inside), whole.log_density(inside) - np.log(mass), rtol=1e-9)
     u = np.linspace(0.0, 1.0, 11)
     np.testing.assert_allclose(cut.cdf(cut.quantile(u)), u, atol=1e-9)
     assert cut.support == (max(lower, whole.lower), min(upper, whole.upper))
@@ -184,7 +186,7 @@ def test_truncation_renormalises(family, arguments, lower, upper):
         -inf,
         -inf,
     ]
-    assert cut.mass_within(-inf, inf) == pytest.approx(1.0, abs=1e-12)
+    assert cut.cdf([cut.lower, cut.upper]).tolist() == pytest.approx([0.0, 1.0], abs=1e-12)
     assert pickle.loads(pickle.dumps(cut)) == cut != whole
 
 
@@ -192,14 +194,6 @@ def test_truncated_twice_is_truncated_once():
     prior = make_prior("normal", [0.0, 2.0])
     assert prior.truncated(-1.0, 5.0).truncated(0.0, 9.0) == prior.truncated(0.0, 5.0)
     assert prior.truncated() is prior
-
-
-def test_mass_within_keeps_digits_in_the_tail():
-    prior = make_prior("normal", [0.0, 1.0])
-    assert prior.mass_within(9.0, inf) == pytest.approx(stats.norm.sf(9.0), rel=1e-12)
-    assert prior.mass_within(1.0, -1.0) == 0.0
-    assert make_prior("uniform", [1.0, 3.0]).mass_within(0.0, 1.5) == pytest.approx(0.25)
-    assert make_prior("lognormal", [1.0, 1.0]).mass_within(-5.0, 0.0) == 0.0
 
 
 def test_truncation_without_mass_is_refused():

@@ -10,7 +10,8 @@ import pytest
 from made_up_fit import made_up_fit
 
 from skinbayes.fit import Fit
-from skinbayes.plot.numbers import interval, percent, quantity
+from skinbayes.phrases import percent
+from skinbayes.plot.numbers import interval, quantity
 from skinbayes.report import quality, sentences
 from skinbayes.report.markup import links, symbols
 from skinbayes.report.ridges import ridge_sentences

@@ -62,7 +62,7 @@ def test_interrupted_after_any_block(tmp_path, uninterrupted, steps):
 
 def test_interrupted_at_every_block_and_resumed_otherwise(tmp_path, uninterrupted):
     """Each piece computed in another way."""
-    ways = [{"vectorize": False}, {"cores": 2}, {}, {"vectorize": False}]
+    ways = [{}, {"cores": 2}, {}, {"cores": 3}]
     for number, way in enumerate(ways):
         with pytest.raises(SamplingInterrupted):
             run_ensembles(

@@ -311,7 +311,7 @@ def test_a_place_that_cannot_be_written(tmp_path):
 def test_the_identity_holds_what_changes_draws_and_nothing_else():
     target = UnitGaussian(2)
     base = draw_identity(target, OPTIONS)
-    for change in ({"ess": 9.0}, {"max_steps": 500}, {"cores": 2}, {"vectorize": False}, {"r_hat": 1.1}):
+    for change in ({"ess": 9.0}, {"max_steps": 500}, {"cores": 2}, {"r_hat": 1.1}):
         assert draw_identity(target, SamplerOptions(**{**OPTIONS.__dict__, **change})) == base
     for change in ({"seed": 9}, {"ensembles": 3}, {"walkers": 10}, {"block_steps": 10}):
         assert draw_identity(target, SamplerOptions(**{**OPTIONS.__dict__, **change})) != base

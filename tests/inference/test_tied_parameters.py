@@ -120,3 +120,34 @@ def test_layered_and_homogeneous_at_once(further: dict[str, Any], said: str) -> 
 def test_what_is_missing_of_layered_skin_is_named() -> None:
     with pytest.raises(InputError, match="Not given: young_modulus_bulk and layer_thickness"):
         problem(**REST, young_modulus_layer=SOFT)
+
+
+def test_set_values_beside_ties(tmp_path: Path) -> None:
+    levels = {"by": "state", "dry": SOFT, "wet": {"same_as": "young_modulus_layer[dry]", "times": 0.1}}
+    to_level = {"same_as": "young_modulus_layer[dry]", "times": 0.5}
+    problem(**LAYER, young_modulus_layer=levels, young_modulus_bulk=to_level).to_toml(tmp_path / "level.toml")
+    text = problem(**LAYER, young_modulus_layer=levels, young_modulus_bulk=HALF).spec.text
+    (tmp_path / "whole.toml").write_text(text.replace("my-model-data", "level-data"))
+
+    def inputs(name: str, **settings: str) -> dict[str, list[list[float]]]:
+        found = sb.load_problem(tmp_path / f"{name}.toml", settings=settings)
+        return {key: value.tolist() for key, value in found.inputs(np.zeros((1, 0))).items()}
+
+    # what is tied to a level follows a value that is set for all of them
+    found = inputs("level", young_modulus_layer="6 MPa")
+    assert found["young_modulus_layer"] == [[6e6]] and found["young_modulus_bulk"] == [[3e6]]
+    found = inputs("level", **{"young_modulus_layer[dry]": "6 MPa"})
+    assert found["young_modulus_layer"] == [[6e6, 6e5]] and found["young_modulus_bulk"] == [[3e6]]
+    with pytest.raises(
+        InputError, match=r"--set young_modulus_bulk\[dry\]: the model file ties all of young_modulus_bulk to"
+    ):
+        inputs("whole", **{"young_modulus_bulk[dry]": "1 MPa"})
+
+
+def test_the_page_names_tied_values() -> None:
+    from skinbayes.report.page import render
+
+    for bulk, heading in ((HALF, "Fixed and tied values"), ("20 kPa", "Fixed values")):
+        found = problem(**LAYER, young_modulus_layer=SOFT, young_modulus_bulk=bulk)
+        draws = found.draw_prior(np.random.default_rng(1), 400)
+        assert f"<h3>{heading} and where" in render(sb.Fit.from_draws(found, draws))

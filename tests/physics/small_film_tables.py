@@ -6,7 +6,7 @@ import numpy as np
 from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin
-from skinbayes.lubrication import FILM_PARAMETERS, FilmTable, build_film_table
+from skinbayes.lubrication import FILM_PARAMETERS, FilmTable, FilmTablePlan, build_film_table
 from skinbayes.roughness import SelfAffineSpectrum, named_surface
 
 RANGES = {
@@ -23,7 +23,9 @@ RANGES = {
 def small_table() -> FilmTable:
     """Bulk modulus, roughness and force vary a little."""
     counts = {"young_modulus_bulk": 5, "rms_height": 4, "normal_force": 4}
-    return build_film_table(RANGES, named_surface("paper_reference"), counts=counts, checked=20)
+    return build_film_table(
+        FilmTablePlan(RANGES, spectrum=named_surface("paper_reference"), counts=counts, checked=20)
+    )
 
 
 def draw(rng: np.random.Generator, vectors: int, rows: int = 0) -> dict[str, np.ndarray]:

@@ -21,7 +21,9 @@ from skinbayes.errors import InputError
 from skinbayes.friction import friction_coefficient
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
+    FilmTablePlan,
     FlowCurve,
+    LubricatedBalls,
     PatirCheng,
     ShearThinning,
     TrivialFlowFactors,
@@ -242,13 +244,16 @@ def test_empty_batches_are_empty():
     balls, one = mid_ball(), one_table()
     liquids = liquid_rows([LIQUID] * 2)
     assert tabulated_friction(
-        one, NONE, parameters=balls, frictional_shear_stress=STRESS
+        one, NONE, balls=LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS)
     ).friction_coefficient.shape == (0,)
     assert tabulated_friction(
-        one, np.empty((0, 2)), parameters=balls, frictional_shear_stress=STRESS
+        one, np.empty((0, 2)), balls=LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS)
     ).outside_table.shape == (0, 2)
     nothing, none = tabulated_friction_of_liquids(
-        one, np.empty((0, 2)), liquids=liquids, parameters=balls, frictional_shear_stress=STRESS
+        one,
+        np.empty((0, 2)),
+        balls=LubricatedBalls(parameters=balls, frictional_shear_stress=STRESS),
+        liquids=liquids,
     )
     assert nothing.friction_coefficient.shape == none.viscosity.shape == (0, 2)
 
@@ -256,7 +261,9 @@ def test_empty_batches_are_empty():
 @lru_cache(maxsize=1)
 def one_table():
     """Films of one ball at all speeds."""
-    return build_film_table({name: (x, x) for name, x in mid_ball().items()}, SURFACE, checked=0)
+    return build_film_table(
+        FilmTablePlan({name: (x, x) for name, x in mid_ball().items()}, spectrum=SURFACE, checked=0)
+    )
 
 
 def mid_ball():
@@ -266,7 +273,9 @@ def mid_ball():
 def test_a_table_of_films_at_its_ends():
     table, ball = one_table(), mid_ball()
     found = tabulated_friction(
-        table, [0.0, 1e-300, 1e-12], parameters=ball, frictional_shear_stress=STRESS, everything=True
+        table,
+        [0.0, 1e-300, 1e-12],
+        balls=LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, everything=True),
     )
     np.testing.assert_allclose(found.friction_coefficient, at_rest(), rtol=5e-3)
     np.testing.assert_allclose(found.friction_coefficient[:2], found.friction_coefficient[2], rtol=1e-6)
@@ -274,22 +283,32 @@ def test_a_table_of_films_at_its_ends():
     np.testing.assert_array_equal(found.central_film[0], found.central_film[1])
     assert (found.asperity_load_fraction <= 1).all() and not found.outside_table.any()
     for product in (0.0, 1e-300, 1e-12):
-        alone = tabulated_friction(table, product, parameters=ball, frictional_shear_stress=STRESS)
+        alone = tabulated_friction(
+            table, product, balls=LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS)
+        )
         assert alone.friction_coefficient == found.friction_coefficient[[0.0, 1e-300, 1e-12].index(product)]
     for product, shift in ((-1.0, 1.0), (np.nan, 1.0), (-1.0, -1.0), (1.0, 0.0), (1e-3, -1.0)):
         bad = tabulated_friction(
-            table, product, parameters=ball, frictional_shear_stress=STRESS, velocity_shift_factor=shift
+            table,
+            product,
+            balls=LubricatedBalls(
+                parameters=ball, frictional_shear_stress=STRESS, velocity_shift_factor=shift
+            ),
         )
         # impossible, which is not to say that another table would do
         assert np.isnan(bad.friction_coefficient) and not bad.outside_table
     far = tabulated_friction(
-        table, [1e300, np.inf], parameters=ball, frictional_shear_stress=STRESS, thickest_film=np.inf
+        table,
+        [1e300, np.inf],
+        balls=LubricatedBalls(parameters=ball, frictional_shear_stress=STRESS, thickest_film=np.inf),
     )
     assert far.outside_table.all() and np.isnan(far.friction_coefficient).all()
     for name in FILM_PARAMETERS:
         for value in (0.0, -1.0, np.inf, np.nan):
             bad = tabulated_friction(
-                table, 1e-3, parameters={**ball, name: value}, frictional_shear_stress=STRESS
+                table,
+                1e-3,
+                balls=LubricatedBalls(parameters={**ball, name: value}, frictional_shear_stress=STRESS),
             )
             assert np.isnan(bad.friction_coefficient) and bad.outside_table
 
@@ -301,9 +320,8 @@ def test_liquids_at_rest(viscosities):
     friction, viscosity = tabulated_friction_of_liquids(
         one_table(),
         speeds,
+        balls=LubricatedBalls(parameters=mid_ball(), frictional_shear_stress=STRESS),
         liquids=liquid_rows([liquid] * 3),
-        parameters=mid_ball(),
-        frictional_shear_stress=STRESS,
     )
     direct, effective = stribeck_curve_of_liquid(speeds, liquid, **BALL, frictional_shear_stress=STRESS)
     for mu, liquids in ((friction.friction_coefficient, viscosity), (direct.friction_coefficient, effective)):
@@ -316,9 +334,8 @@ def test_liquids_at_rest(viscosities):
     bad, thick = tabulated_friction_of_liquids(
         one_table(),
         [-1.0, np.nan, 1e-3],
+        balls=LubricatedBalls(parameters=mid_ball(), frictional_shear_stress=STRESS),
         liquids=liquid_rows([liquid] * 3),
-        parameters=mid_ball(),
-        frictional_shear_stress=STRESS,
     )
     assert (
         np.isnan(bad.friction_coefficient).tolist()

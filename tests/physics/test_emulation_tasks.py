@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from small_film_tables import RANGES
 
-from skinbayes.emulation import Tasks
-from skinbayes.lubrication import FilmTable, build_film_table
+from skinbayes.emulation import Tasks, to_arrays
+from skinbayes.lubrication import FilmTable, FilmTablePlan, build_film_table
 from skinbayes.roughness import named_surface
 
 COUNTS = {"young_modulus_bulk": 2, "rms_height": 2, "normal_force": 2}
@@ -40,22 +40,22 @@ class Memory:
 
 def small(kept: Memory | None = None, count: list[int] | None = None) -> FilmTable:
     told = [] if count is None else count
-    return build_film_table(
-        RANGES, named_surface("paper_reference"), counts=COUNTS, speeds=8, nodes=32, checked=3, kept=kept,
-        progress=lambda done, total: told.append(done),
-    )  # fmt: skip
+    plan = FilmTablePlan(
+        RANGES, spectrum=named_surface("paper_reference"), counts=COUNTS, speeds=8, nodes=32, checked=3
+    )
+    return build_film_table(plan, kept=kept, progress=lambda done, total: told.append(done))
 
 
 @pytest.mark.parametrize("patience", [0, 9, 18])
 def test_a_stopped_build_gives_the_same_table(patience: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skinbayes.emulation.tasks._SAVED_EVERY", 0.0)
-    whole = small().to_arrays()
+    whole = to_arrays(small())
     memory = Memory(patience)
     with pytest.raises(KeyboardInterrupt):
         small(memory)
     memory.patience = 10**9
     told: list[int] = []
-    arrays, metadata = small(memory, told).to_arrays()
+    arrays, metadata = to_arrays(small(memory, told))
     assert metadata == whole[1]
     assert all(arrays[name].tobytes() == whole[0][name].tobytes() for name in whole[0])
     assert told[0] > 1 or patience == 0

@@ -55,6 +55,21 @@ def test_time_goes_on_for_ever():
     assert dried(30.0, film=0.0, spread=0.0).film_thickness < 1e-12
 
 
+def test_a_film_is_no_thicker_anywhere_than_there_is_water_for():
+    dry = friction_coefficient(STRESS, CONTACT.dry_area, nominal_pressure=LOAD)
+    nothing = dried([0.0, 30.0, 40.0], film=0.0)
+    np.testing.assert_array_equal(nothing.friction_coefficient, dry)
+    np.testing.assert_array_equal(nothing.dry_fraction, 1.0)
+    # all films, however thin beside the wanted spread, hold the water that was laid down
+    films = np.array([1e-9, 1e-8, 1e-7, 3e-7, 6e-7, 1e-6])
+    curve = drying_curve(30.0, 30.0, initial_film=films, evaporation_rate=1.743e-7, contact=CONTACT,
+                         frictional_shear_stress=STRESS, nominal_pressure=LOAD)  # fmt: skip
+    np.testing.assert_allclose(curve.film_thickness, films, rtol=2e-4)
+    # little water makes little of a difference
+    assert curve.friction_coefficient[0] == pytest.approx(dry, rel=1e-12)
+    assert (np.diff(curve.friction_coefficient) >= 0).all()
+
+
 def test_drying_with_impossible_parameters_is_nan_as_a_whole():
     for changes in (
         *({name: x} for name in ("film", "rate", "spread") for x in (-1e-9, np.nan)),

@@ -11,6 +11,7 @@ from skinbayes.errors import InputError
 from skinbayes.files import load_dataset
 from skinbayes.lubrication import (
     FlowCurve,
+    LubricatedBalls,
     asperity_law,
     liquid_rows,
     lubricated_films,
@@ -72,18 +73,17 @@ def test_a_newtonian_flow_curve_is_a_plain_viscosity():
     found, viscosity = tabulated_friction_of_liquids(
         small_table(),
         speeds,
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=2.0
+        ),
         liquids=rows,
-        parameters=parameters,
-        frictional_shear_stress=STRESS,
-        velocity_shift_factor=2.0,
     )
     wanted = tabulated_friction(
         small_table(),
         0.3 * speeds,
-        parameters=parameters,
-        frictional_shear_stress=STRESS,
-        velocity_shift_factor=2.0,
-        everything=True,
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=2.0, everything=True
+        ),
     )
     np.testing.assert_allclose(found.friction_coefficient, wanted.friction_coefficient, rtol=1e-12)
     np.testing.assert_allclose(viscosity.viscosity, 0.3, rtol=1e-12)
@@ -99,11 +99,10 @@ def test_viscosity_agrees_with_its_film():
     found, viscosity = tabulated_friction_of_liquids(
         small_table(),
         speeds,
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=1.5, everything=True
+        ),
         liquids=rows_of(names),
-        parameters=parameters,
-        frictional_shear_stress=STRESS,
-        velocity_shift_factor=1.5,
-        everything=True,
     )
     good = np.isfinite(found.friction_coefficient)
     assert good.mean() > 0.9
@@ -120,9 +119,9 @@ def test_viscosity_agrees_with_its_film():
     plain = tabulated_friction(
         small_table(),
         viscosity.viscosity * speeds,
-        parameters=parameters,
-        frictional_shear_stress=STRESS,
-        velocity_shift_factor=1.5,
+        balls=LubricatedBalls(
+            parameters=parameters, frictional_shear_stress=STRESS, velocity_shift_factor=1.5
+        ),
     )
     np.testing.assert_allclose(found.friction_coefficient[good], plain.friction_coefficient[good], rtol=1e-9)
 
@@ -136,7 +135,10 @@ def test_viscosity_against_a_plain_root_finder(name):
     speeds = np.exp(rng.uniform(np.log(1e-3), np.log(0.3), 3))
     rows = liquid_rows([curve] * 3)
     found = tabulated_friction_of_liquids(
-        table, speeds, liquids=rows, parameters=parameters, frictional_shear_stress=STRESS
+        table,
+        speeds,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
+        liquids=rows,
     )[1].viscosity
 
     for vector in range(4):
@@ -149,9 +151,7 @@ def test_viscosity_against_a_plain_root_finder(name):
                 film = tabulated_friction(
                     table,
                     np.exp(log_viscosity) * speed,
-                    parameters=one,
-                    frictional_shear_stress=STRESS,
-                    everything=True,
+                    balls=LubricatedBalls(parameters=one, frictional_shear_stress=STRESS, everything=True),
                 )
                 rate = np.clip(speed / film.central_film, low * (1 + 1e-12), high * (1 - 1e-12))
                 return np.log(curve.viscosity(rate)) - log_viscosity
@@ -170,14 +170,20 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
     parameters = draw(rng, 120)
     parameters["normal_force"] = np.exp(rng.uniform(np.log(0.2), np.log(0.6), (1, len(names))))
     batch = tabulated_friction_of_liquids(
-        small_table(), speeds, liquids=rows, parameters=parameters, frictional_shear_stress=STRESS
+        small_table(),
+        speeds,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
+        liquids=rows,
     )
     for place in (0, 48, 49, 119):
         one = {
             name: value[place : place + 1] if len(value) > 1 else value for name, value in parameters.items()
         }
         single = tabulated_friction_of_liquids(
-            small_table(), speeds, liquids=rows, parameters=one, frictional_shear_stress=STRESS
+            small_table(),
+            speeds,
+            balls=LubricatedBalls(parameters=one, frictional_shear_stress=STRESS),
+            liquids=rows,
         )
         for whole, part in zip((*batch[0], *batch[1]), (*single[0], *single[1]), strict=True):
             assert np.array_equal(whole[place], part[0], equal_nan=True)
@@ -189,9 +195,8 @@ def test_wrong_number_of_rows_is_named():
         tabulated_friction_of_liquids(
             small_table(),
             [1e-3] * 3,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
             liquids=rows_of(["honey"] * 2),
-            parameters=parameters,
-            frictional_shear_stress=STRESS,
         )
 
 
@@ -229,9 +234,8 @@ def test_direct_solution_agrees_with_its_film_and_with_the_table():
         found, tabulated = tabulated_friction_of_liquids(
             small_table(),
             speeds,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=STRESS),
             liquids=liquid_rows([CURVES[name]] * 6),
-            parameters=parameters,
-            frictional_shear_stress=STRESS,
         )
         np.testing.assert_allclose(found.friction_coefficient, curve.friction_coefficient, rtol=7e-3)
         np.testing.assert_allclose(tabulated.viscosity, viscosity.viscosity, rtol=7e-3)

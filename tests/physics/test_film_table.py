@@ -8,12 +8,14 @@ import pytest
 from small_film_tables import RANGES, draw, skin_of, small_table, spectrum_of
 
 from skinbayes.contact.line_contact import line_contact
+from skinbayes.emulation import from_arrays, to_arrays
 from skinbayes.errors import InputError
 from skinbayes.lubrication import (
     FilmTable,
+    FilmTablePlan,
+    LubricatedBalls,
     build_film_table,
     film_sweeps,
-    film_table_key,
     lubricated_films,
     stribeck_curve,
     tabulated_friction,
@@ -50,7 +52,9 @@ def vector(parameters, place):
 def test_table_against_direct_solutions():
     parameters = draw(np.random.default_rng(1), 4)
     found = tabulated_friction(
-        small_table(), PRODUCTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True
+        small_table(),
+        PRODUCTS,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
     )
     for place in range(4):
         wanted = direct(vector(parameters, place), PRODUCTS)
@@ -69,7 +73,9 @@ def test_beyond_both_ends_of_the_speeds_against_direct_solutions():
     parameters = vector(draw(np.random.default_rng(2), 1), 0)
     products = np.array([1e-9, 1e-8, 1e-7, 0.1, 0.5])
     found = tabulated_friction(
-        small_table(), products, parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True
+        small_table(),
+        products,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
     )
     wanted = direct(parameters, products, nodes=300)
     for name in ("couette", "pressure_flow", "central_film"):
@@ -99,7 +105,7 @@ def test_similar_balls_are_the_same_entry_and_the_same_curve():
     wanted = direct(parameters, products)
     solved = direct(similar, of_similar)
     tabulated = tabulated_friction(
-        table, of_similar, parameters=similar, frictional_shear_stress=SHEAR_STRESS
+        table, of_similar, balls=LubricatedBalls(parameters=similar, frictional_shear_stress=SHEAR_STRESS)
     )
     for curve, tolerance in ((solved, 1e-5), (tabulated, 6e-3)):
         # E0 h is smaller by the ratio and so are V^(1/2) and p_H
@@ -116,20 +122,24 @@ def test_rows_of_a_batch_are_single_evaluations_to_the_last_bit():
         batch = tabulated_friction(
             small_table(),
             PRODUCTS,
-            parameters=parameters,
-            frictional_shear_stress=stress,
-            velocity_shift_factor=shift,
-            everything=True,
+            balls=LubricatedBalls(
+                parameters=parameters,
+                frictional_shear_stress=stress,
+                velocity_shift_factor=shift,
+                everything=True,
+            ),
         )
         for place in (0, 1, 272, 273, 699):
             one = {name: value[place : place + 1] for name, value in parameters.items()}
             single = tabulated_friction(
                 small_table(),
                 PRODUCTS,
-                parameters=one,
-                frictional_shear_stress=stress[place],
-                velocity_shift_factor=shift[place],
-                everything=True,
+                balls=LubricatedBalls(
+                    parameters=one,
+                    frictional_shear_stress=stress[place],
+                    velocity_shift_factor=shift[place],
+                    everything=True,
+                ),
             )
             for whole, part in zip(batch, single, strict=True):
                 assert np.array_equal(whole[place], part[0], equal_nan=True)
@@ -142,9 +152,7 @@ def test_curve_and_its_slope_are_continuous():
     found = tabulated_friction(
         small_table(),
         np.exp(log_product),
-        parameters=parameters,
-        frictional_shear_stress=SHEAR_STRESS,
-        everything=True,
+        balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS, everything=True),
     )
     step = log_product[1] - log_product[0]
     for name in ("friction_coefficient", "couette", "pressure_flow", "central_film"):
@@ -161,8 +169,9 @@ def test_curve_and_its_slope_are_continuous():
     along = tabulated_friction(
         small_table(),
         3e-3,
-        parameters={**parameters, "young_modulus_bulk": moduli[:, None]},
-        frictional_shear_stress=1e7,
+        balls=LubricatedBalls(
+            parameters={**parameters, "young_modulus_bulk": moduli[:, None]}, frictional_shear_stress=1e7
+        ),
     )
     slope = np.diff(np.log(along.friction_coefficient[:, 0]))
     assert np.abs(np.diff(slope)).max() < 1e-4
@@ -172,7 +181,7 @@ def test_outside_is_refused_not_extrapolated():
     table = small_table()
     inside = vector(draw(np.random.default_rng(6), 1), 0)
     assert not tabulated_friction(
-        table, 1e-3, parameters=inside, frictional_shear_stress=SHEAR_STRESS
+        table, 1e-3, balls=LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
     ).outside_table
     for name, value in (
         ("young_modulus_bulk", 6.1e4),
@@ -187,16 +196,20 @@ def test_outside_is_refused_not_extrapolated():
         changed = {**inside, name: value}
         if name in ("sphere_radius", "young_modulus_layer"):
             changed |= {"rms_height": 24.9e-6, "young_modulus_bulk": 5.99e4, "normal_force": 0.599}
-        found = tabulated_friction(table, 1e-3, parameters=changed, frictional_shear_stress=SHEAR_STRESS)
+        found = tabulated_friction(
+            table, 1e-3, balls=LubricatedBalls(parameters=changed, frictional_shear_stress=SHEAR_STRESS)
+        )
         assert found.outside_table, name
         assert np.isnan(found.friction_coefficient)
         assert not table.contains(**changed)
-    beyond = tabulated_friction(table, 10.0, parameters=inside, frictional_shear_stress=SHEAR_STRESS)
+    beyond = tabulated_friction(
+        table, 10.0, balls=LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
+    )
     assert beyond.film_beyond_ball
     assert np.isnan(beyond.friction_coefficient)
     assert np.isnan(
         tabulated_friction(
-            table, -1.0, parameters=inside, frictional_shear_stress=SHEAR_STRESS
+            table, -1.0, balls=LubricatedBalls(parameters=inside, frictional_shear_stress=SHEAR_STRESS)
         ).friction_coefficient
     )
 
@@ -209,19 +222,21 @@ def test_held_out_errors_are_kept_with_the_table():
 
 def test_tables_travel():
     table = small_table()
-    arrays, metadata = table.to_arrays()
-    again = FilmTable.from_arrays(arrays, json.loads(json.dumps(metadata)))
+    arrays, metadata = to_arrays(table)
+    again = from_arrays(FilmTable, arrays, json.loads(json.dumps(metadata)))
     parameters = draw(np.random.default_rng(7), 3)
-    wanted = tabulated_friction(table, PRODUCTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+    wanted = tabulated_friction(
+        table, PRODUCTS, balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS)
+    )
     for other in (again, pickle.loads(pickle.dumps(table))):
         found = tabulated_friction(
-            other, PRODUCTS, parameters=parameters, frictional_shear_stress=SHEAR_STRESS
+            other,
+            PRODUCTS,
+            balls=LubricatedBalls(parameters=parameters, frictional_shear_stress=SHEAR_STRESS),
         )
         assert np.array_equal(found.friction_coefficient, wanted.friction_coefficient, equal_nan=True)
-    with pytest.raises(InputError, match="version 0"):
-        FilmTable.from_arrays(arrays, {**metadata, "version": 0})
     with pytest.raises(InputError, match="lacks held_out"):
-        FilmTable.from_arrays({k: v for k, v in arrays.items() if k != "held_out"}, metadata)
+        from_arrays(FilmTable, {k: v for k, v in arrays.items() if k != "held_out"}, metadata)
 
 
 def test_progress_and_processes():
@@ -229,11 +244,10 @@ def test_progress_and_processes():
     said = []
     surface = named_surface("paper_reference")
     options = {"counts": {"normal_force": 3}, "speeds": 9, "nodes": 40, "checked": 2}
-    one = build_film_table(
-        ranges, surface, **options, progress=lambda done, total: said.append((done, total))
-    )
+    plan = FilmTablePlan(ranges, spectrum=surface, **options)
+    one = build_film_table(plan, progress=lambda done, total: said.append((done, total)))
     assert said == [(done, 8) for done in range(1, 9)]  # three anchors, three nodes, two checks
-    two = build_film_table(ranges, surface, **options, processes=2)
+    two = build_film_table(plan, processes=2)
     assert np.array_equal(one.coefficients, two.coefficients)
 
 
@@ -246,16 +260,16 @@ def test_films_that_are_not_found_end_the_build(monkeypatch):
 
     ranges = {name: (low, low) for name, (low, _) in RANGES.items()}
     surface, options = named_surface("paper_reference"), {"speeds": 9, "checked": 0}
-    whole = build_film_table(ranges, surface, **options)
+    whole = build_film_table(FilmTablePlan(ranges, spectrum=surface, **options))
     monkeypatch.setattr(film_sweeps, "lubricated_films", sometimes)
     # with more nodes a film may be found
-    again = build_film_table(ranges, surface, **options, nodes=84)
+    again = build_film_table(FilmTablePlan(ranges, spectrum=surface, **options, nodes=84))
     assert np.abs(again.coefficients - whole.coefficients)[:10].max() < 0.1
     monkeypatch.setattr(
         film_sweeps, "lubricated_films", lambda *a, **o: solved(*a, **o)._replace(couette=np.nan)
     )
     with pytest.raises(InputError, match=r"No film was found for a cylinder of radius 0\.00453 m"):
-        build_film_table(ranges, surface, **options)
+        build_film_table(FilmTablePlan(ranges, spectrum=surface, **options))
 
 
 def test_smooth_films_between_and_below_their_points():
@@ -284,33 +298,41 @@ def test_smooth_films_between_and_below_their_points():
 
 def test_wrong_inputs_are_named():
     with pytest.raises(InputError, match="need exactly young_modulus_layer"):
-        build_film_table({"rms_height": (1e-6, 2e-6)}, named_surface("paper_reference"))
+        build_film_table(
+            FilmTablePlan({"rms_height": (1e-6, 2e-6)}, spectrum=named_surface("paper_reference"))
+        )
     with pytest.raises(InputError, match=r"rms_height ranges from 2e-05 to 1e-05 m"):
-        build_film_table({**RANGES, "rms_height": (2e-5, 1e-5)}, named_surface("paper_reference"))
+        build_film_table(
+            FilmTablePlan({**RANGES, "rms_height": (2e-5, 1e-5)}, spectrum=named_surface("paper_reference"))
+        )
     with pytest.raises(InputError, match="missing or unknown: layer_thickness"):
         tabulated_friction(
             small_table(),
             1e-3,
-            parameters={n: v[0] for n, v in RANGES.items() if n != "layer_thickness"},
-            frictional_shear_stress=1e6,
+            balls=LubricatedBalls(
+                parameters={n: v[0] for n, v in RANGES.items() if n != "layer_thickness"},
+                frictional_shear_stress=1e6,
+            ),
         )
 
 
 def test_the_key_tells_tables_apart():
     surface = named_surface("paper_reference")
-    key = film_table_key(RANGES, surface)
+    key = FilmTablePlan(RANGES, spectrum=surface).key()
     assert json.loads(json.dumps(key)) == key
-    assert film_table_key(dict(reversed(RANGES.items())), named_surface("paper_reference")) == key
+    assert (
+        FilmTablePlan(dict(reversed(RANGES.items())), spectrum=named_surface("paper_reference")).key() == key
+    )
     others = [
-        film_table_key({**RANGES, "normal_force": (0.2, 0.7)}, surface),
-        film_table_key(RANGES, named_surface("paper_reference_sharp")),
-        film_table_key(RANGES, surface, poisson_ratio_layer=0.4),
-        film_table_key(RANGES, surface, poisson_ratio_bulk=0.4),
-        film_table_key(RANGES, surface, area_correction=1.0),
-        film_table_key(RANGES, surface, counts={"rms_height": 9}),
-        film_table_key(RANGES, surface, speeds=32),
-        film_table_key(RANGES, surface, nodes=97),
-        film_table_key(RANGES, surface, checked=0),
+        FilmTablePlan({**RANGES, "normal_force": (0.2, 0.7)}, spectrum=surface).key(),
+        FilmTablePlan(RANGES, spectrum=named_surface("paper_reference_sharp")).key(),
+        FilmTablePlan(RANGES, spectrum=surface, poisson_ratio_layer=0.4).key(),
+        FilmTablePlan(RANGES, spectrum=surface, poisson_ratio_bulk=0.4).key(),
+        FilmTablePlan(RANGES, spectrum=surface, area_correction=1.0).key(),
+        FilmTablePlan(RANGES, spectrum=surface, counts={"rms_height": 9}).key(),
+        FilmTablePlan(RANGES, spectrum=surface, speeds=32).key(),
+        FilmTablePlan(RANGES, spectrum=surface, nodes=97).key(),
+        FilmTablePlan(RANGES, spectrum=surface, checked=0).key(),
     ]
     texts = {json.dumps(other, sort_keys=True) for other in (key, *others)}
     assert len(texts) == 10

@@ -7,6 +7,8 @@ from named_fields import skin_from, surface_from
 from skinbayes.contact import LayeredSkin
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
+    FilmTablePlan,
+    LubricatedBalls,
     build_film_table,
     film_axes,
     stribeck_curve,
@@ -46,7 +48,7 @@ def solve(parameters, product, stress, nodes):
 @pytest.mark.parametrize("thickness", [20e-6, 173e-6])
 def test_one_table_for_all_skins_and_balls(thickness):
     ranges = {**BOX, "layer_thickness": (thickness, thickness)}
-    table = build_film_table(ranges, named_surface("paper_reference"))
+    table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference")))
     assert table.held_out[1] < 5e-3
     assert table.held_out[2] < 7.5e-3
     rng = np.random.default_rng(31)
@@ -57,7 +59,9 @@ def test_one_table_for_all_skins_and_balls(thickness):
         product = np.exp(rng.uniform(np.log(1e-6), np.log(10.0)))
         stress = np.exp(rng.uniform(np.log(1e6), np.log(5e7)))
         named = dict(zip(FILM_PARAMETERS, parameters, strict=True))
-        found = tabulated_friction(table, product, parameters=named, frictional_shear_stress=stress)
+        found = tabulated_friction(
+            table, product, balls=LubricatedBalls(parameters=named, frictional_shear_stress=stress)
+        )
         wanted = solve(parameters, [product], stress, nodes=128)
         if np.isfinite(wanted) and found.outside_table:
             refused += 1
@@ -83,7 +87,9 @@ def test_layer_thickness_and_poisson_ratios():
     }
     shape = named_surface("paper_reference")
     table = build_film_table(
-        ranges, shape, poisson_ratio_layer=0.4, poisson_ratio_bulk=0.45, area_correction=1.0
+        FilmTablePlan(
+            ranges, spectrum=shape, poisson_ratio_layer=0.4, poisson_ratio_bulk=0.45, area_correction=1.0
+        )
     )
     assert table.axes.names == ("young_modulus_bulk", "layer_thickness")
     rng = np.random.default_rng(5)
@@ -107,7 +113,7 @@ def test_layer_thickness_and_poisson_ratios():
             nodes=160,
         ).friction_coefficient
         found = tabulated_friction(
-            table, products, parameters=named, frictional_shear_stress=1e7
+            table, products, balls=LubricatedBalls(parameters=named, frictional_shear_stress=1e7)
         ).friction_coefficient
         np.testing.assert_allclose(found, wanted, rtol=7.5e-3)
 

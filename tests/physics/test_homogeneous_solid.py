@@ -17,7 +17,7 @@ from skinbayes.contact import (
 )
 from skinbayes.emulation import Box
 from skinbayes.errors import InputError
-from skinbayes.lubrication import build_film_table, tabulated_friction
+from skinbayes.lubrication import FilmTablePlan, LubricatedBalls, build_film_table, tabulated_friction
 from skinbayes.roughness import SelfAffineSpectrum, named_surface, rms_slope
 from skinbayes.wetting import bridge_table, film_contact, humid_groups, humid_table, skin_groups
 
@@ -76,18 +76,18 @@ def test_a_table_of_films() -> None:
         "nodes": 40,
         "poisson_ratio_bulk": 0.4,
     }
-    solid = build_film_table({"young_modulus": (1e5, 2e5), **ball}, SURFACE, **small)  # type: ignore[arg-type]
+    solid = build_film_table(FilmTablePlan({"young_modulus": (1e5, 2e5), **ball}, spectrum=SURFACE, **small))  # type: ignore[arg-type]
     assert solid.axes.names == ("young_modulus",)
     node = 1.5e5
     named = {name: ends[0] for name, ends in ball.items()} | {"young_modulus": node}
     skin = {name: ends[0] for name, ends in ball.items()} | {"layer_thickness": 2e-5}
     fixed = {"young_modulus_layer": node, "young_modulus_bulk": node, **skin}
-    one = build_film_table({name: (value, value) for name, value in fixed.items()}, SURFACE,
-                           poisson_ratio_layer=0.4, **small)  # type: ignore[arg-type] # fmt: skip
+    one = build_film_table(FilmTablePlan({name: (value, value) for name, value in fixed.items()}, spectrum=SURFACE,
+                           poisson_ratio_layer=0.4, **small))  # type: ignore[arg-type] # fmt: skip
     products = np.geomspace(1e-6, 1e-2, 5)
     found, expected = (
         tabulated_friction(
-            table, products, parameters=given, frictional_shear_stress=1e6
+            table, products, balls=LubricatedBalls(parameters=given, frictional_shear_stress=1e6)
         ).friction_coefficient
         for table, given in ((solid, named), (one, fixed))
     )
