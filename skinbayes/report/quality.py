@@ -139,6 +139,7 @@ TOLD = (
     "one in {thinning} of the others kept.",
     "{ensembles} independent ensembles of {walkers} walkers found the posterior in {steps} steps; {importance_draws} independent "
     "draws by importance sampling took the place of their positions (Pareto k {pareto_k}, at most 0.5 is accepted).",
+    "Importance sampling was tried and given up: {importance_refused}.",
     "{runs} independent runs of nested sampling with {live_points} live points each were merged.",
     "{acceptance} of the proposed moves were accepted.",
     "The model was evaluated {evaluations} times.",

@@ -46,7 +46,10 @@ class EnsembleEngine:
         positions, log_density = chains.draws(DRAWS_PER_CHAIN)
         words = verdict(chains, target, options)
         evidence = _evidence(chains, target, options) if options.importance and chains.converged else None
-        return Draws(positions, None, evidence, _diagnostics(chains, words), log_density)
+        diagnostics = _diagnostics(chains, words)
+        if chains.refused:
+            diagnostics["importance_refused"] = chains.refused
+        return Draws(positions, None, evidence, diagnostics, log_density)
 
 
 def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
@@ -97,6 +100,9 @@ def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:
     kept = chains.positions[:, chains.kept, :, 0].size
     effective = min(kept / tau, log_density.size) if np.isfinite(tau) else chains.positions.shape[0]
     evidence = bridge(log_density - proposal, found.log_density - found.log_proposal, effective)
+    # explored positions that are few and correlated add more error than they take away
+    if evidence.plain_error < evidence.error:
+        return evidence.plain, evidence.plain_error
     return evidence.value, evidence.error
 
 

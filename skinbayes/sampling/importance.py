@@ -97,12 +97,12 @@ def importance_draws(
     -------
     the draws, or in a sentence why there are none, and how many were tried
     """
-    points = [chain[_evenly(len(chain), POINTS)] for chain in explored]
+    points, densities = zip(*map(_visited, explored, explored_density), strict=True)
     half = len(points) // 2
     first, second = np.concatenate(points[:half]), np.concatenate(points[half:])
     mixture = fit_mixture(first, second, rng)
-    held_out = [density[_evenly(len(density), POINTS)] for density in explored_density[half:]]
-    if (foreseen := _foreseen(np.concatenate(held_out) - mixture.log_density(second))) < WORTHWHILE:
+    held_out = np.concatenate(densities[half:])
+    if (foreseen := _foreseen(held_out - mixture.log_density(second))) < WORTHWHILE:
         return f"a proposal would give {foreseen:.2g} effective draws for each evaluation", 0
     everything = np.concatenate([first, second])
     mixture = mixture.refitted(everything, np.ones(len(everything)))
@@ -127,7 +127,7 @@ def importance_draws(
             new = proposal.draw(int(np.ceil(min(1.2 * more - 1.0, 10.0) * count)), rng)
             positions, density = np.concatenate([positions, new]), np.append(density, evaluate(new))
             found = _weighed(positions, density, proposal, rounds.count + len(positions))
-        against = list(_against(found, points, explored_density, ess))
+        against = list(_against(found, explored, explored_density, ess))
         if not against:
             return found
         rounds.add(positions, density, proposal)
@@ -205,8 +205,15 @@ def _foreseen(log_ratios: FloatArray) -> float:
     return float(np.exp(2 * count - logsumexp(log_ratios) - logsumexp(-log_ratios)))
 
 
+def _visited(chain: FloatArray, log_density: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Some of the different positions of an ensemble: a walker that did not move does not count by its steps."""
+    places = np.sort(np.unique(chain, axis=0, return_index=True)[1])
+    places = places[_evenly(places.size, POINTS)]
+    return chain[places], log_density[places]
+
+
 def _against(
-    found: ImportanceDraws, points: list[FloatArray], explored_density: FloatArray, ess: float
+    found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray, ess: float
 ) -> Iterator[str]:
     """What speaks against accepting draws, one sentence each."""
     if found.ess.min() < ess or found.tail_ess.min() < 0.25 * ess:
@@ -223,10 +230,11 @@ def _against(
     # where the proposal is missing something that ensembles have found, their ratios exceed all those of the draws
     highest = (found.log_density - found.log_proposal).max()
     below = []
-    for chain, density in zip(points, explored_density, strict=True):
-        density = density[_evenly(len(density), POINTS)]
-        beyond = density - found.proposal.log_density(chain) > highest
-        if beyond.mean() > 0.01:
+    for chain, density in zip(explored, explored_density, strict=True):
+        visited, its_density = _visited(chain, density)
+        beyond = its_density - found.proposal.log_density(visited) > highest
+        # one walker that hardly moved is no mode
+        if beyond.sum() >= 5 and beyond.mean() > 0.01:
             yield f"{beyond.mean():.0%} of the positions of an ensemble lie where the proposal has hardly any draws"
         quantiles = np.array([weighted_quantiles(x, weights, TAILS) for x in found.positions.T])
         below.append((chain[:, :, np.newaxis] < quantiles).mean(axis=0))
