@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.special import softmax
 
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut, RefitProgress, Scores, difference, score
 from skinbayes.comparison.verdicts import (
@@ -37,6 +38,8 @@ class ComparedModel:
     unreliable_rows : data whose Pareto k says that leaving them out cannot be estimated from these draws
     converged : whether the fit met its stopping rule
     left_out : the same for all data of one level of a grouping column at a time, by column
+    log_evidence, log_evidence_se : ln Z and its standard error; None if not known of all models
+    probability : of the model given the data, if all models were equally probable before; None without evidence
     """
 
     name: str
@@ -49,6 +52,9 @@ class ComparedModel:
     unreliable_rows: int
     converged: bool
     left_out: Mapping[str, LeftOut] = field(default_factory=dict)
+    log_evidence: float | None = None
+    log_evidence_se: float | None = None
+    probability: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
@@ -89,6 +95,7 @@ class Comparison:
                 said.append(
                     f"'{best.name}' predicts left-out data better than '{other.name}', by {gap:.1f} ± {error:.1f}."
                 )
+        said += self._on_evidence()
         if self.grouped_by:
             said.append(pointwise_question(self.grouped_by))
         if self.rows < FEW_ROWS:
@@ -108,6 +115,31 @@ class Comparison:
             if not model.converged:
                 said.append(f"'{model.name}' has NOT CONVERGED; its numbers are provisional.")
         return said
+
+    def _on_evidence(self) -> list[str]:
+        """What the evidence says, and whether it agrees with the predictive densities."""
+        if not self.has_evidence:
+            return []
+        first, second = sorted(self.models, key=lambda model: -(model.log_evidence or 0.0))[:2]
+        gap = (first.log_evidence or 0.0) - (second.log_evidence or 0.0)
+        error = np.hypot(first.log_evidence_se or 0.0, second.log_evidence_se or 0.0)
+        said = (
+            f"Evidence: '{first.name}' made the data exp({gap:.2f} ± {error:.2f}) times as probable, before they were seen, as "
+            f"'{second.name}'. This hangs on the priors: a parameter that the data leave alone costs nothing, a needlessly wide "
+            "prior of one that they determine costs evidence."
+        )
+        if first.name == self.models[0].name:
+            return [said]
+        return [
+            said,
+            f"Left-out data are predicted best by '{self.models[0].name}' instead: predictive densities ask how well a fitted "
+            "model predicts one more datum, the evidence how well the priors predicted all of them.",
+        ]
+
+    @property
+    def has_evidence(self) -> bool:
+        """Whether ln Z is known of all models."""
+        return all(model.log_evidence is not None for model in self.models)
 
     def _on_levels(self, column: str) -> list[str]:
         said = [level_question(column, self.grouped_by)]
@@ -190,6 +222,9 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
     weights = stacking_weights(pointwise)
     best = int(np.argmax([entry.loo["elpd"] for entry in scores]))
     left_out = _differences(scores)
+    known = [entry.log_evidence for entry in scores if entry.log_evidence is not None]
+    evidence = known if len(known) == len(scores) else None
+    probabilities = softmax([value for value, _ in evidence]) if evidence else None
     models = []
     for i, entry in enumerate(scores):
         gap, error = difference(pointwise[i], pointwise[best])
@@ -205,6 +240,9 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
                 unreliable_rows=int((entry.loo["pareto_k"] > entry.loo["good_k"]).sum()),
                 converged=entry.converged,
                 left_out=left_out[i],
+                log_evidence=evidence[i][0] if evidence else None,
+                log_evidence_se=evidence[i][1] if evidence else None,
+                probability=None if probabilities is None else float(probabilities[i]),
             )
         )
     models.sort(key=lambda model: -model.elpd_loo)

@@ -99,12 +99,14 @@ class Scores:
     converged : whether the fit met its stopping rule
     loo : of single data, see :func:`skinbayes.fit.arviz_adapter.loo`
     left_out : of levels, by grouping column
+    log_evidence : ln Z and its standard error, None if the engine did not give it
     """
 
     name: str
     converged: bool
     loo: dict[str, Any]
     left_out: dict[str, LeftOut]
+    log_evidence: tuple[float, float] | None = None
 
 
 def grouping_columns(fit: Fit) -> tuple[str, ...]:
@@ -142,7 +144,8 @@ def score(fit: Fit, refit: bool = False, progress: RefitProgress | None = None) 
         if progress is not None and wanted:
             progress(len(wanted), len(wanted))
     left_out = {column: _summed(column, levels) for column, levels in found.items()}
-    return Scores(fit.name, fit.converged, loo(fit.groups), left_out)
+    evidence = fit.provenance["sampling"].get("log_evidence")
+    return Scores(fit.name, fit.converged, loo(fit.groups), left_out, tuple(evidence) if evidence else None)
 
 
 def difference(first: FloatArray, second: FloatArray) -> tuple[float, float]:
