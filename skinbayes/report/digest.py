@@ -9,6 +9,7 @@ from skinbayes.plot.predictive import row_names
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.groups import group_findings
 from skinbayes.report.ridges import posterior_ridges
+from skinbayes.report.trends import residual_trends
 from skinbayes.report.validity import flags
 
 if TYPE_CHECKING:
@@ -28,7 +29,8 @@ def digest(fit: Fit) -> dict[str, Any]:
         ``validity`` (flag to the number of rows flagged in at least 5 % of the draws, the fraction of all predictions, what it
         means, and the fraction of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of
         each effect, the scale over the noise, the fraction of the variance), ``ridges`` (pairs of parameters, exponent, the
-        combination that is known and how well) and ``priors`` (parameter to its update by the data). Quantities in SI.
+        combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
+        checks of its residuals along columns that simulated data hardly ever meet, the most surprising first). Quantities in SI.
     """
     names = row_names(fit)
     return {
@@ -42,5 +44,9 @@ def digest(fit: Fit) -> dict[str, Any]:
                 "prior_quantile": update.prior_quantile,
             }
             for label, update in fit_updates(fit).items()
+        },
+        "trends": {
+            name: [asdict(check) for check in checks if check.found]
+            for name, checks in residual_trends(fit).items()
         },
     }

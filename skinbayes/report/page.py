@@ -89,7 +89,7 @@ def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[s
         "answer": opening.answer(fit),
         "unanswered": opening.unanswered(fit),
         "fits": quality.verdict(fit),
-        "misfit": quality.examine(fit).misfit,
+        "misfit": quality.misfit(fit),
         "sampling": quality.sampling(fit),
         "first": next(iter(drawn)),
         "kept": fit.groups["posterior"].sizes["chain"] * fit.groups["posterior"].sizes["draw"],

@@ -17,6 +17,7 @@ from skinbayes.plot.predictive import (
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
+from skinbayes.report.trends import trend_sentences
 from skinbayes.statistics.agreement import Agreement
 from skinbayes.statistics.agreement import examine as agreement_of
 from skinbayes.statistics.noise_families import noise_family
@@ -38,9 +39,14 @@ def examine(fit: Fit) -> Agreement:
     return agreement_of(observed, predictive_draws(fit), of_one_kind)
 
 
+def misfit(fit: Fit) -> bool:
+    """Whether single values, mean, scatter or a trend of the residuals speak against the model."""
+    return examine(fit).misfit or bool(trend_sentences(fit))
+
+
 def verdict(fit: Fit) -> list[str]:
     """Whether the model fits, in a few sentences; what only looks like a good fit is not praised."""
-    found = examine(fit)
+    found, follows = examine(fit), trend_sentences(fit)
     inside = (
         f"{found.wide} of {found.count} values lie in their 90 % ranges "
         f"(about {number(0.9 * found.count, 2)} expected)"
@@ -51,20 +57,23 @@ def verdict(fit: Fit) -> list[str]:
             why.append(f"{_rows(fit, found)} {'is' if len(found.far) == 1 else 'are'} far out")
         why += [f"the {name} of the data is not reproduced" for name in found.missed]
         said = [
-            f"The model misses something: {'; '.join(why)}. Do not use its values before it is clear what."
+            f"The model misses something: {'; '.join(why)}. Do not use its values before it is clear what.",
+            *follows,
         ]
+    elif follows:
+        said = ["The model misses a trend.", *follows, "Do not use its values before it is clear why."]
     elif found.count < FEW:
         said = [
             "Hardly tested: almost any model with as many parameters agrees with "
             f"{'one value' if found.count == 1 else f'{found.count} values'}."
         ]
     else:
-        said = [f"Single values, mean and scatter do not speak against it: {inside}."]
+        said = [f"Single values, mean, scatter and trends do not speak against it: {inside}."]
     if group_columns(fit):
         many = and_list([plural(column) for column in group_columns(fit)])
         said.append(f"What is predicted knows the effects of the {many} measured.")
     if scatter := free_scatter(fit):
-        start = "The" if found.misfit or found.count < FEW else "That is little: the"
+        start = "The" if found.misfit or follows or found.count < FEW else "That is little: the"
         said.append(
             f"{start} scatter was fitted too ({scatter}) and takes in whatever the model misses. Look for dots that lie on "
             "one side together."

@@ -55,7 +55,7 @@ def examine(observed: FloatArray, draws: FloatArray, of_one_kind: bool) -> Agree
     ----------
     observed : N data
     draws : predictive draws, shape ``(S, N)``; those that are not finite are left out
-    alike : True if the data are of one kind, so that their mean and scatter mean something
+    of_one_kind : True if the data are of one kind, so that their mean and scatter mean something
 
     Examples
     --------

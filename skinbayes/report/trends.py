@@ -1,0 +1,111 @@
+"""What residuals do along the columns that vary, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.phrases import percent
+from skinbayes.plot.numbers import quantity
+from skinbayes.plot.predictive import observables, observed_values, predictive_draws
+from skinbayes.plot.symbols import spoken_name
+from skinbayes.statistics.noise_families import noise_family
+from skinbayes.statistics.trends import Trend, trends
+from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX, lookup
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+
+MOST_DRAWS = 1000
+"""Simulated data sets that the data are held against."""
+
+FEWEST_DRAWS, MOST_NUMBERS = 200, 2_000_000
+"""With many rows fewer, so that they hold at most so many numbers."""
+
+ORDER = "order"
+"""Name of the order of the rows among the columns."""
+
+
+def residual_trends(fit: Fit) -> dict[str, tuple[Trend, ...]]:
+    """Checks of the residuals along every column that varies and in the order of the rows, by observable."""
+    names = observables(fit)
+    observed = observed_values(fit).reshape(len(names), -1)
+    draws = predictive_draws(fit)
+    most = max(FEWEST_DRAWS, min(MOST_DRAWS, MOST_NUMBERS // observed.size))
+    draws = draws[:: max(1, len(draws) // most)].reshape(-1, len(names), observed.shape[1])
+    columns = columns_of_rows(fit)
+    found = {}
+    for place, name in enumerate(names):
+        logarithmic = is_logarithmic(fit, name)
+        with np.errstate(all="ignore"):
+            data, simulated = (np.log(x) if logarithmic else x for x in (observed[place], draws[:, place]))
+            usable = simulated[np.isfinite(simulated).all(axis=1)]
+            if len(usable):
+                middle = np.median(usable, axis=0)
+                found[name] = trends(data - middle, usable - middle, columns)
+    return found
+
+
+def is_logarithmic(fit: Fit, observable: str) -> bool:
+    """Whether residuals of an observable are those of its logarithm."""
+    return bool(noise_family(str(fit.provenance["noise"][observable])).logarithmic)
+
+
+def columns_of_rows(fit: Fit) -> dict[str, FloatArray]:
+    """Numbers that differ from row to row, and the order of the rows, each ``(N,)``."""
+    count = fit.groups["observed_data"].sizes["row"]
+    found: dict[str, FloatArray] = {}
+    if "constant_data" in fit.groups:
+        for name, values in fit.groups["constant_data"].data_vars.items():
+            spread = str(name).endswith(STANDARD_DEVIATION_SUFFIX)
+            if values.dtype.kind in "fiu" and values.shape == (count,) and not spread:
+                found[str(name)] = np.asarray(values.values, dtype=float)
+    return found | {ORDER: np.arange(count, dtype=float)}
+
+
+def worst(fit: Fit) -> dict[str, Trend]:
+    """The most surprising trend of each observable that has one."""
+    return {name: checks[0] for name, checks in residual_trends(fit).items() if checks and checks[0].found}
+
+
+def trend_sentences(fit: Fit) -> list[str]:
+    """One sentence for each observable whose residuals follow a column as those of the model hardly ever do."""
+    return [_said(fit, name, trend) for name, trend in worst(fit).items()]
+
+
+def _said(fit: Fit, observable: str, trend: Trend) -> str:
+    known = lookup(observable)
+    what = known.symbol if known else spoken_name(observable)
+    along = "the order of the rows" if trend.column == ORDER else spoken_name(trend.column)
+    chance = f"simulated data of the model do so in {percent(trend.probability)} of cases"
+    logs = is_logarithmic(fit, observable)
+    low, middle, high = (_size(observable, x, logs) for x in (trend.low, trend.middle, trend.high))
+    if trend.kind == "slope":
+        return (
+            f"{what} {'rises' if trend.value > 0 else 'falls'} along {along} as this model cannot: on average the data lie "
+            f"{low} the model in the lower third of the rows and {high} it in the upper third ({chance})."
+        )
+    if trend.kind == "curvature":
+        return (
+            f"{what} bends along {along} as this model cannot: on average the data lie {low} the model in the lower third of "
+            f"the rows, {middle} it in the middle and {high} it in the upper third ({chance})."
+        )
+    if trend.kind == "spread":
+        return (
+            f"The scatter of {what} {'grows' if trend.value > 0 else 'shrinks'} along {along}, which this model does not know "
+            f"({chance})."
+        )
+    return (
+        f"Residuals of {what} that follow each other along {along} are alike (correlation {trend.value:.2f}, at most "
+        f"{trend.expected[1]:.2f} would be usual): the model misses a curve there, or the rows are not independent ({chance})."
+    )
+
+
+def _size(observable: str, residual: float, logarithmic: bool) -> str:
+    side = "above" if residual > 0 else "below"
+    if logarithmic:
+        return f"{percent(abs(float(np.expm1(residual))))} {side}"
+    known = lookup(observable)
+    return f"{quantity(abs(residual), known.unit if known else '1')} {side}"
