@@ -201,7 +201,25 @@ class NoiseFamily:
     def log_density_at(
         self, observed: FloatArray, predicted: FloatArray, width: FloatArray, **shape: ArrayLike
     ) -> FloatArray:
-        """:meth:`log_density` for a known width, such as one that no parameter changes; silences no warnings."""
+        """:meth:`log_density` for a known width, such as one that no parameter changes; silences no warnings.
+
+        Parameters
+        ----------
+        observed, predicted : arrays that broadcast, SI
+        width : scale of the residuals, in their unit, from :meth:`width`
+        **shape : values of the shape parameters
+
+        Returns
+        -------
+        ndarray
+            ln p(y | f), broadcast shape; −inf where the data are impossible.
+
+        Examples
+        --------
+        >>> one = np.ones(1)
+        >>> print(gaussian.log_density_at(one, one, one).round(4))
+        [-0.9189]
+        """
         known = self._shape(shape)
         log_y = np.log(observed) if self.logarithmic else 0.0
         z = ((log_y - np.log(predicted)) if self.logarithmic else (observed - predicted)) / width

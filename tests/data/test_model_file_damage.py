@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -48,9 +49,23 @@ def damage(text: str, chooser: random.Random) -> str:
     return "".join(tokens)
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(name=st.sampled_from(sorted(SHIPPED)), seed=st.integers(0, 2**32))
+ANY = {"name": st.sampled_from(sorted(SHIPPED)), "seed": st.integers(0, 2**32)}
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(**ANY)
 def test_damaged_models_are_read_or_refused(name: str, seed: int, tmp_path: Path) -> None:
+    read_or_refused(name, seed, tmp_path)
+
+
+@pytest.mark.slow
+@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(**ANY)
+def test_many_damaged_models_are_read_or_refused(name: str, seed: int, tmp_path: Path) -> None:
+    read_or_refused(name, seed, tmp_path)
+
+
+def read_or_refused(name: str, seed: int, tmp_path: Path) -> None:
     text = damage(SHIPPED[name], random.Random(seed))
     path = tmp_path / "mine.toml"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
