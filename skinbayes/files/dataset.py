@@ -148,55 +148,6 @@ class Dataset:
         """What :attr:`lines` count: ``"line"`` of a file, or ``"row"``."""
         return "row" if self.in_memory or not self.lines else "line"
 
-    def place(self, row: int) -> str:
-        """Where a row stands, for messages.
-
-        Parameters
-        ----------
-        row : number of the row, from 0
-
-        Returns
-        -------
-        str
-            The file, and the line of the row in it or its number.
-
-        Examples
-        --------
-        >>> data.place(0).endswith("line 2")
-        True
-        """
-        return f"{self.path}, {self.row_word} {self.lines[row] if self.lines else row + 1}"
-
-    def positive(self, column: str, why: str) -> FloatArray:
-        """A numeric column whose values have to be above 0.
-
-        Parameters
-        ----------
-        column : its name
-        why : the reason, for the message
-
-        Returns
-        -------
-        ndarray
-            Shape ``(N,)``, SI.
-
-        Raises
-        ------
-        InputError
-            A value is not; the message names the row.
-
-        Examples
-        --------
-        >>> data.positive("friction_coefficient", "its logarithm is taken").shape == (data.n_rows,)
-        True
-        """
-        values = np.asarray(self.columns[column], dtype=float)
-        for row in np.flatnonzero(~(values > 0)).tolist():
-            raise InputError(
-                f"{self.place(row)}, {column}: found {values[row]:g}; expected a value > 0, as {why}"
-            )
-        return values
-
     @property
     def n_rows(self) -> int:
         """Number of rows."""

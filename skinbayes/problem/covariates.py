@@ -9,6 +9,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
+from skinbayes.files.dataset_rows import positive_column
 from skinbayes.files.group_block import CovariateSpec
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.forward import ForwardModel
@@ -32,7 +33,9 @@ def covariate_columns(covariates: Sequence[CovariateSpec], dataset: Dataset) -> 
                 f"{dataset.path}: no column '{column} [..]', which the covariate '{covariate.name}' needs; "
                 f"columns: {', '.join(dataset.columns)}"
             )
-        found[column] = dataset.positive(column, f"the covariate '{covariate.name}' enters as a power")
+        found[column] = positive_column(
+            dataset, column, f"the covariate '{covariate.name}' enters as a power"
+        )
     return found
 
 

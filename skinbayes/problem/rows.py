@@ -9,6 +9,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset, as_dataset
+from skinbayes.files.dataset_rows import place_of_row, positive_column
 from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import RESERVED_NAMES
@@ -237,8 +238,8 @@ def _spread_column(dataset: Dataset, name: str) -> str:
         if (apart := np.flatnonzero(np.abs(ratio - 1) > ROUNDING)).size:
             row = int(apart[0])
             raise InputError(
-                f"{dataset.place(row)}, {error}: found {ratio[row]:.3g} times {deviation}/sqrt(n); expected the same within "
-                f"{ROUNDING:.0%}"
+                f"{place_of_row(dataset, row)}, {error}: found {ratio[row]:.3g} times {deviation}/sqrt(n); expected the same "
+                f"within {ROUNDING:.0%}"
             )
     return error
 
@@ -260,7 +261,7 @@ def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -
         _check_said(spec, "input_spread", column)
         spread = np.asarray(dataset.columns[column], dtype=float)
         if spec.input_spread == "use" and spread.any():
-            found[name] = spread / dataset.positive(name, "its spread is taken relative to it")
+            found[name] = spread / positive_column(dataset, name, "its spread is taken relative to it")
     if spec.input_spread == "use" and not columns:
         raise InputError(
             f'{spec.path}: data.input_spread = "use", but no input among the columns of {dataset.path} has a column '

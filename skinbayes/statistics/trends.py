@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import rankdata
 
 from skinbayes.arrays import FloatArray
 
@@ -83,6 +82,8 @@ def trends(
     >>> first.kind, first.found, round(first.value, 1)
     ('slope', True, 1.0)
     """
+    from scipy.stats import rankdata
+
     data = np.vstack([residuals, simulated])
     data = data[np.isfinite(data).all(axis=1)]
     usable = {name: x for name, x in columns.items() if np.unique(x).size >= FEWEST_VALUES}
@@ -113,6 +114,8 @@ def trends(
 
 def _statistics(data: FloatArray, column: FloatArray) -> list[FloatArray]:
     """One statistic of each kind for every data set, shape ``(S + 1,)`` each."""
+    from scipy.stats import rankdata
+
     ranks = _standardised(rankdata(column))
     square = np.square(ranks)
     bend = _standardised(square - square.mean() - (square @ ranks) / (ranks @ ranks) * ranks)

@@ -71,7 +71,7 @@ HOMES: dict[str, set[str]] = {
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
     "platformdirs": {"emulation"},
-    "pydantic": {"files"},
+    "pydantic": {"files", "fit"},
     "rich": {"cli"},
     "tomlkit": {"files"},
     "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot"},
