@@ -50,7 +50,8 @@ def residual_trends(fit: Fit) -> dict[str, tuple[Trend, ...]]:
 
 def is_logarithmic(fit: Fit, observable: str) -> bool:
     """Whether residuals of an observable are those of its logarithm."""
-    return bool(noise_family(str(fit.provenance["noise"][observable])).logarithmic)
+    noise = fit.provenance.get("noise", {}).get(observable)
+    return noise is not None and bool(noise_family(str(noise)).logarithmic)
 
 
 def columns_of_rows(fit: Fit) -> dict[str, FloatArray]:
