@@ -69,8 +69,7 @@ def test_few_simulations(tmp_path: Path) -> None:
             with_data(problem, data),
             seed=i,
             ess=200,
-            walkers=32,
-            max_steps=1500,
+            importance=True,
         )
         levels.append(
             [np.mean(fit.draws(name) < value) for name, value in zip(problem.names, truth, strict=True)]
