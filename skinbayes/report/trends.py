@@ -67,8 +67,10 @@ def columns_of_rows(fit: Fit) -> dict[str, FloatArray]:
 
 
 def worst(fit: Fit) -> dict[str, Trend]:
-    """The most surprising trend of each observable that has one."""
-    return {name: checks[0] for name, checks in residual_trends(fit).items() if checks and checks[0].found}
+    """The most surprising trend of each observable that has one; along a column rather than in the order of the rows."""
+    found = {name: [c for c in checks if c.found] for name, checks in residual_trends(fit).items()}
+    # rows often stand in the order of a column
+    return {name: min(checks, key=lambda c: c.column == ORDER) for name, checks in found.items() if checks}
 
 
 def trend_sentences(fit: Fit) -> list[str]:

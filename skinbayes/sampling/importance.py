@@ -28,13 +28,13 @@ Evaluate = Callable[[FloatArray], FloatArray]
 POINTS = 2000
 """Explored positions of each ensemble that the mixture is fitted to."""
 
-WIDE_WEIGHT, WIDE_STRETCH = 0.1, 1.5
+WIDE_WEIGHT, WIDE_STRETCH = 0.1, 2.5
 """A component about the whole, so much wider than it, gets this part of all draws."""
 
 ROUNDS = 6
 """Rounds in which the proposal is improved at most."""
 
-TRIES = 2
+TRIES = 5
 """How often draws are made that are to be accepted; those that were not improve the proposal of the next."""
 
 WORTHWHILE = 0.03

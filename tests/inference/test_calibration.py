@@ -70,6 +70,7 @@ def test_few_simulations(tmp_path: Path) -> None:
             seed=i,
             ess=200,
             importance=True,
+            max_steps=1000,
         )
         levels.append(
             [np.mean(fit.draws(name) < value) for name, value in zip(problem.names, truth, strict=True)]

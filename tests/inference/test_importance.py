@@ -140,7 +140,7 @@ def test_known_densities(target, log_evidence, quantiles):
     assert np.all(np.abs(below - LEVELS) < 4 * error)
     assert found.diagnostics["ess_bulk"].min() >= 1000
     # a few evaluations for an effective draw, where walkers need tens
-    assert found.diagnostics["evaluations"] < 12 * found.diagnostics["ess_bulk"].min()
+    assert found.diagnostics["evaluations"] < 20 * found.diagnostics["ess_bulk"].min()
 
 
 def test_one_seed_gives_the_same_draws_with_any_number_of_workers_and_when_resumed(tmp_path: Path):
