@@ -47,10 +47,9 @@ def compare(runs: tuple[str, ...], refit: bool, as_json: bool) -> None:
     headers = ("model", "elpd", "difference", "p_loo", "weight", "unreliable")
     print_table(headers, rows, right=range(1, 6))
     if result.has_evidence:
-        ordered = sorted(result.models, key=lambda model: -(model.log_evidence or 0.0))
         evidence = [
             (m.name, f"{m.log_evidence:.2f} ± {m.log_evidence_se:.2f}", f"{m.probability:.3f}")
-            for m in ordered
+            for m in result.by_evidence
         ]
         print_table(("model", "ln evidence", "probability"), evidence, right=range(1, 3))
     for column in result.columns:

@@ -8,16 +8,16 @@ from skinbayes.comparison.scores import FEW_ROWS, LeftOut, LeftOutLevel
 from skinbayes.comparison.weights import stacking_weights
 
 __all__ = [
-           "FEW_ROWS",
-           "AgainstBaselines",
-           "ComparedModel",
-           "Comparison",
-           "LeftOut",
-           "LeftOutLevel",
-           "NoiseFloor",
-           "RankedAgainst",
-           "against_baselines",
-           "compare",
-           "noise_floor",
-           "stacking_weights",
-]  # fmt: skip
+    "FEW_ROWS",
+    "AgainstBaselines",
+    "ComparedModel",
+    "Comparison",
+    "LeftOut",
+    "LeftOutLevel",
+    "NoiseFloor",
+    "RankedAgainst",
+    "against_baselines",
+    "compare",
+    "noise_floor",
+    "stacking_weights",
+]

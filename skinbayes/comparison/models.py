@@ -120,7 +120,7 @@ class Comparison:
         """What the evidence says, and whether it agrees with the predictive densities."""
         if not self.has_evidence:
             return []
-        first, second = sorted(self.models, key=lambda model: -(model.log_evidence or 0.0))[:2]
+        first, second = self.by_evidence[:2]
         gap = (first.log_evidence or 0.0) - (second.log_evidence or 0.0)
         error = np.hypot(first.log_evidence_se or 0.0, second.log_evidence_se or 0.0)
         said = (
@@ -140,6 +140,11 @@ class Comparison:
     def has_evidence(self) -> bool:
         """Whether ln Z is known of all models."""
         return all(model.log_evidence is not None for model in self.models)
+
+    @property
+    def by_evidence(self) -> list[ComparedModel]:
+        """The models, that of the largest evidence first."""
+        return sorted(self.models, key=lambda model: -(model.log_evidence or 0.0))
 
     def _on_levels(self, column: str) -> list[str]:
         said = [level_question(column, self.grouped_by)]

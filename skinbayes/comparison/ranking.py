@@ -1,4 +1,4 @@
-"""How a fit stands against baseline_models: whether it beats, equals or loses to them, and what each leaves unexplained."""
+"""How a fit stands against baseline models: whether it beats, equals or loses to them, and what each leaves unexplained."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Scatter:
 
 @dataclass(frozen=True)
 class AgainstBaselines:
-    """A fit beside its baseline_models.
+    """A fit beside its baseline models.
 
     Attributes
     ----------

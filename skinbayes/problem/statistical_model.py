@@ -364,7 +364,7 @@ class StatisticalModel(PredictingModel):
 
     @property
     def expensive(self) -> bool:
-        """Whether a likelihood takes so long that fewer walkers are better: a expensive forward model, or very many rows."""
+        """Whether a likelihood takes so long that fewer walkers are better: an expensive forward model, or very many rows."""
         return self.forward.expensive or self.conditions.n_rows >= MANY_ROWS
 
     @cached_property

@@ -12,7 +12,7 @@ from skinbayes.phrases import and_list, number, percent, plural
 from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.rows import effect_draws, group_columns
-from skinbayes.statistics.noise_families import noise_family
+from skinbayes.report.trends import is_logarithmic
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def group_findings(fit: Fit) -> list[GroupFinding]:
         return []
     noise = _noise(fit)
     scales = {column: _scale_draws(fit, column) for column in columns}
-    logarithmic = noise_family(str(fit.provenance["noise"][observables(fit)[0]])).logarithmic
+    logarithmic = is_logarithmic(fit, observables(fit)[0])
     found = []
     for column in columns:
         label = f"group_scale[{column}]"

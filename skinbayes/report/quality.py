@@ -17,10 +17,9 @@ from skinbayes.plot.predictive import (
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.trends import trend_sentences
+from skinbayes.report.trends import is_logarithmic, trend_sentences
 from skinbayes.statistics.agreement import Agreement
 from skinbayes.statistics.agreement import examine as agreement_of
-from skinbayes.statistics.noise_families import noise_family
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
@@ -87,7 +86,7 @@ def free_scatter(fit: Fit) -> str:
         return ""
     name = observables(fit)[0]
     known, value = lookup(name), float(fit.quantiles("noise_scale", 0.5))
-    if noise_family(str(fit.provenance["noise"][name])).logarithmic:
+    if is_logarithmic(fit, name):
         return f"{percent(value)} of {known.symbol if known else spoken_name(name)}"
     return quantity(value, known.unit if known else "1")
 

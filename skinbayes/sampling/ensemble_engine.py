@@ -58,18 +58,11 @@ def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
         f"{len(found.positions)} independent draws by importance sampling have an effective sample size of at least "
         f"{found.ess.min():.0f} (Pareto k {found.shape:.2f})."
     )
-    diagnostics = {
-        "converged": True,
-        "verdict": words,
+    diagnostics = _explored(chains, words) | {
         "missing": [],
-        "ensembles": chains.positions.shape[0],
-        "walkers": chains.positions.shape[2],
-        "steps": chains.steps,
         "importance_draws": len(found.positions),
         "pareto_k": found.shape,
         "evaluations": chains.evaluations + found.evaluations,
-        "invalid": chains.invalid,
-        "first_invalid": chains.first_invalid if chains.invalid else None,
         "ess_bulk": found.ess,
         "ess_tail": found.tail_ess,
     }
@@ -106,20 +99,26 @@ def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:
     return evidence.value, evidence.error
 
 
-def _diagnostics(chains: Chains, words: str) -> dict[str, Any]:
-    report = chains.report
+def _explored(chains: Chains, words: str) -> dict[str, Any]:
+    """What is said of walkers whether they gave the draws or not."""
     return {
-        "converged": report.converged,
+        "converged": chains.converged,
         "verdict": words,
-        "missing": list(report.missing),
         "ensembles": chains.positions.shape[0],
         "walkers": chains.positions.shape[2],
         "steps": chains.steps,
-        "burn_in": report.burn_in,
-        "thinning": chains.thinning(),
         "evaluations": chains.evaluations,
         "invalid": chains.invalid,
         "first_invalid": chains.first_invalid if chains.invalid else None,
+    }
+
+
+def _diagnostics(chains: Chains, words: str) -> dict[str, Any]:
+    report = chains.report
+    return _explored(chains, words) | {
+        "missing": list(report.missing),
+        "burn_in": report.burn_in,
+        "thinning": chains.thinning(),
         "acceptance_fraction": chains.acceptance_fraction(),
         "tau": report.tau,
         "ess_bulk": report.ess_bulk,

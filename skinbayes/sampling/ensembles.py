@@ -58,7 +58,7 @@ def run_ensembles(
     options : seed, sizes, when to stop, how to compute
     store : where steps are kept; a store that resumes gives the steps it holds
     progress : called at the beginning and after every block of steps
-    moves : builds the proposals; those that suit a expensive target, or another, if omitted
+    moves : builds the proposals; those that suit an expensive target, or another, if omitted
 
     Returns
     -------

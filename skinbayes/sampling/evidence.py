@@ -13,7 +13,6 @@ import numpy as np
 from scipy.special import expit, logsumexp
 
 from skinbayes.arrays import FloatArray
-from skinbayes.statistics.pareto import pareto_shape
 
 ITERATIONS = 200
 
@@ -28,14 +27,12 @@ class Evidence:
     ----------
     value, error : ln Z and its standard error
     plain, plain_error : the same by plain importance sampling
-    pareto_k : of the importance weights
     """
 
     value: float
     error: float
     plain: float
     plain_error: float
-    pareto_k: float
 
 
 def bridge(posterior: FloatArray, proposal: FloatArray, effective: float) -> Evidence:
@@ -76,4 +73,4 @@ def bridge(posterior: FloatArray, proposal: FloatArray, effective: float) -> Evi
     variance = first.var() / first.mean() ** 2 / proposal.size
     # independent draws of the same number, or what the chains differ by if that is more
     variance += max(second.var() / second.mean() ** 2 / effective, means.var(ddof=1) / len(means))
-    return Evidence(value, float(np.sqrt(variance)), plain, plain_error, pareto_shape(weights))
+    return Evidence(value, float(np.sqrt(variance)), plain, plain_error)

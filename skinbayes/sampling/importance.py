@@ -18,6 +18,7 @@ from scipy.special import logsumexp, stdtrit
 
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.draws import weighted_quantiles
+from skinbayes.sampling.stopping import TAIL_FRACTION
 from skinbayes.statistics.annealing import effective_number
 from skinbayes.statistics.pareto import pareto_shape, smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
@@ -73,6 +74,10 @@ class ImportanceDraws:
     tail_ess: FloatArray
     evaluations: int
 
+    def lacking(self, ess: float) -> float:
+        """How many times as many draws it takes for an effective sample size; at most 1 if these do."""
+        return float(max(ess / self.ess.min(), TAIL_FRACTION * ess / self.tail_ess.min()))
+
 
 def importance_draws(
     explored: FloatArray,
@@ -122,17 +127,16 @@ def importance_draws(
         positions = proposal.draw(count, rng)
         density = evaluate(positions)
         found = _weighed(positions, density, proposal, rounds.count + count)
-        if found.ess.min() < ess or found.tail_ess.min() < 0.25 * ess:
-            more = max(ess / found.ess.min(), 0.25 * ess / found.tail_ess.min())
+        if (more := found.lacking(ess)) > 1.0:
             new = proposal.draw(int(np.ceil(min(1.2 * more - 1.0, 10.0) * count)), rng)
             positions, density = np.concatenate([positions, new]), np.append(density, evaluate(new))
             found = _weighed(positions, density, proposal, rounds.count + len(positions))
-        against = list(_against(found, explored, explored_density, ess))
-        if not against:
+        against = next(_against(found, explored, explored_density, ess), None)
+        if against is None:
             return found
         rounds.add(positions, density, proposal)
         mixture = rounds.improved(mixture, rng)
-    return against[0], rounds.count
+    return str(against), rounds.count
 
 
 class _Rounds:
@@ -216,7 +220,7 @@ def _against(
     found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray, ess: float
 ) -> Iterator[str]:
     """What speaks against accepting draws, one sentence each."""
-    if found.ess.min() < ess or found.tail_ess.min() < 0.25 * ess:
+    if found.lacking(ess) > 1.0:
         yield f"the effective sample size stays at {found.ess.min():.0f}"
     if not found.shape <= LARGEST_SHAPE:
         yield f"the weights are too uneven (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted)"
@@ -229,6 +233,7 @@ def _against(
                 yield f"the weights are too uneven in a tail of coordinate {column + 1} (Pareto k {shape:.2f})"
     # where the proposal is missing something that ensembles have found, their ratios exceed all those of the draws
     highest = (found.log_density - found.log_proposal).max()
+    quantiles = np.array([weighted_quantiles(x, weights, TAILS) for x in found.positions.T])
     below = []
     for chain, density in zip(explored, explored_density, strict=True):
         visited, its_density = _visited(chain, density)
@@ -236,7 +241,6 @@ def _against(
         # one walker that hardly moved is no mode
         if beyond.sum() >= 5 and beyond.mean() > 0.01:
             yield f"{beyond.mean():.0%} of the positions of an ensemble lie where the proposal has hardly any draws"
-        quantiles = np.array([weighted_quantiles(x, weights, TAILS) for x in found.positions.T])
         below.append((chain[:, :, np.newaxis] < quantiles).mean(axis=0))
     fractions = np.array(below)
     count = len(fractions)

@@ -14,7 +14,7 @@ from skinbayes.sampling.stopping import WALKER_R_HAT, StoppingReport, next_check
 
 Phase = Literal["starting", "settling", "collecting", "done"]
 
-_BURN_IN_SHARE, _BURN_IN_TIMES = 0.2, 10.0  # of the stopping rule
+_BURN_IN_FRACTION, _BURN_IN_TIMES = 0.2, 10.0  # of the stopping rule
 
 
 class RunProgress(Protocol):
@@ -179,7 +179,9 @@ def steps_needed(report: StoppingReport, options: SamplerOptions) -> int | None:
     kept = (report.steps - report.burn_in) * max(
         1.0, *(fraction for fraction, _ in _shortfalls(report, options))
     )
-    burn_in = max(_BURN_IN_TIMES * float(report.tau.max()), kept * _BURN_IN_SHARE / (1.0 - _BURN_IN_SHARE))
+    burn_in = max(
+        _BURN_IN_TIMES * float(report.tau.max()), kept * _BURN_IN_FRACTION / (1.0 - _BURN_IN_FRACTION)
+    )
     return next_check(max(int(kept + burn_in), report.steps) - 1, options.block_steps)
 
 

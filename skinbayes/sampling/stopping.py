@@ -48,7 +48,7 @@ TAU_CHANGE = 1.0
 JUDGED_STEPS = 256
 """Longer chains are thinned to between half of this and this many steps before tau is estimated."""
 
-TAIL_SHARE = 0.25
+TAIL_FRACTION = 0.25
 """Fraction of the effective sample size asked for that the 5 % and 95 % quantiles have to reach."""
 
 FEWER_STEPS = 64
@@ -212,11 +212,11 @@ def _missing(report: StoppingReport, ensembles: int, options: SamplerOptions) ->
         found = f"{-size:.0f}" if size < 0 else "unknown, because its autocorrelation has not died out yet"
         yield f"the effective sample size of {name} is {found}, {options.ess:.0f} is asked for"
     name, size = _largest(report, -report.ess_tail)
-    if not -size >= TAIL_SHARE * options.ess:
+    if not -size >= TAIL_FRACTION * options.ess:
         found = f"{-size:.0f}" if size < 0 else "unknown, because their autocorrelation has not died out yet"
         yield (
             f"the effective sample size of the 5 and 95 % quantiles of {name} is {found}, "
-            f"{TAIL_SHARE * options.ess:.0f} is asked for"
+            f"{TAIL_FRACTION * options.ess:.0f} is asked for"
         )
     name, value = _largest(report, report.r_hat)
     if not value <= options.r_hat:

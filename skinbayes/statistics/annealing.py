@@ -15,7 +15,7 @@ from skinbayes.statistics.densities import BatchFunction
 SWEEPS, LAST_SWEEPS = 4, 12
 """Moves of all members after each rise of the power, and after the last."""
 
-_SHARE = 0.4  # of the members that the weights of a rise leave effective
+_FRACTION = 0.4  # of the members that the weights of a rise leave effective
 _JITTER = 1e-4  # of the spread of the population, so that members chosen twice part
 
 
@@ -91,7 +91,7 @@ def anneal(
     count, dimension = position.shape
     while power < final:
         # however steep the likelihood, there is an end to it
-        following = max(largest_power(value, _SHARE * count, power, final), min(1.02 * power, final))
+        following = max(largest_power(value, _FRACTION * count, power, final), min(1.02 * power, final))
         weight = np.exp((following - power) * (value - value.max()))
         # systematic choice: each member as often as its weight says, up to one
         ladder = (rng.random() + np.arange(count)) / count
