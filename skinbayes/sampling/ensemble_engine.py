@@ -11,7 +11,7 @@ from skinbayes.sampling.advance import Density
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.ensembles import run_ensembles
-from skinbayes.sampling.evidence import bridge
+from skinbayes.sampling.evidence import bridge, combined
 from skinbayes.sampling.importance import ImportanceDraws, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import RunProgress
@@ -21,6 +21,9 @@ from skinbayes.sampling.verdict import verdict
 
 EVIDENCE_DRAWS = 2000
 """Draws of a proposal for ln Z, where walkers gave those of the posterior: its error is then about 0.02."""
+
+FOUND_WITH = 3
+"""Draws that are expected where at least one falls in 95 of 100 cases: ln 20."""
 
 DRAWS_PER_CHAIN = 2500
 """Draws kept of each ensemble; nearly independent, so four ensembles give quantiles to about 0.01 sd."""
@@ -56,13 +59,14 @@ def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
     words = (
         f"Converged: {chains.positions.shape[0]} ensembles found the posterior in {chains.steps} steps, and "
         f"{len(found.positions)} independent draws by importance sampling have an effective sample size of at least "
-        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f})."
+        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f}). A part of the posterior in less than 1/"
+        f"{len(found.positions) // FOUND_WITH:d} of the space that they cover can have been missed."
     )
     diagnostics = _explored(chains, words) | {
         "missing": [],
         "importance_draws": len(found.positions),
         "pareto_k": found.shape,
-        "evaluations": chains.evaluations + found.evaluations,
+        "evaluations": chains.evaluations + len(found.positions),
         "ess_bulk": found.ess,
         "ess_tail": found.tail_ess,
     }
@@ -86,17 +90,18 @@ def _evidence(chains: Chains, target: Target, options: SamplerOptions) -> tuple[
 
 def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:
     positions, log_density = chains.draws(DRAWS_PER_CHAIN)
-    proposal = found.proposal.log_density(positions.reshape(-1, positions.shape[-1])).reshape(
-        log_density.shape
-    )
     tau = chains.report.tau.max()
     kept = chains.positions[:, chains.kept, :, 0].size
     effective = min(kept / tau, log_density.size) if np.isfinite(tau) else chains.positions.shape[0]
-    evidence = bridge(log_density - proposal, found.log_density - found.log_proposal, effective)
+    evidences = []
+    for side, proposal in enumerate(found.proposals):
+        at_walkers = proposal.log_density(positions.reshape(-1, positions.shape[-1]))
+        at_draws = (found.log_density - found.log_proposal)[side::2]
+        evidences.append(bridge(log_density - at_walkers.reshape(log_density.shape), at_draws, effective))
+    bridged = combined([(one.value, one.error) for one in evidences], shared=True)
+    plain = combined([(one.plain, one.plain_error) for one in evidences])
     # explored positions that are few and correlated add more error than they take away
-    if evidence.plain_error < evidence.error:
-        return evidence.plain, evidence.plain_error
-    return evidence.value, evidence.error
+    return min(bridged, plain, key=lambda one: one[1])
 
 
 def _explored(chains: Chains, words: str) -> dict[str, Any]:

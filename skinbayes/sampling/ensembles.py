@@ -73,7 +73,7 @@ def run_ensembles(
     MachineError
         If steps cannot be stored any more, or a worker process died twice; steps stored before are kept.
     """
-    moves = moves or moves_for(options.expensive)
+    moves = moves or moves_for(options.expensive or options.importance)
     rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
@@ -144,7 +144,7 @@ def draw_identity(
     -------
     values that can be written as JSON, under names that make sense in a message
     """
-    moves = moves or moves_for(options.expensive)
+    moves = moves or moves_for(options.expensive or options.importance)
     return {
         FINGERPRINT: target.fingerprint,
         "coordinates": list(target.names),

@@ -7,6 +7,7 @@ sampling, which is the check: the two share the draws of the proposal, but weigh
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,3 +75,21 @@ def bridge(posterior: FloatArray, proposal: FloatArray, effective: float) -> Evi
     # independent draws of the same number, or what the chains differ by if that is more
     variance += max(second.var() / second.mean() ** 2 / effective, means.var(ddof=1) / len(means))
     return Evidence(value, float(np.sqrt(variance)), plain, plain_error)
+
+
+def combined(estimates: Sequence[tuple[float, float]], shared: bool = False) -> tuple[float, float]:
+    """Mean of equally good estimates and its standard error.
+
+    Parameters
+    ----------
+    estimates : values and standard errors
+    shared : whether they may have all their errors in common; otherwise these are independent of each other
+
+    Examples
+    --------
+    >>> combined([(1.0, 0.3), (2.0, 0.4)])
+    (1.5, 0.25)
+    """
+    values, errors = np.array(estimates).T
+    count = 1 if shared else len(values)
+    return float(values.mean()), float(np.sqrt(np.square(errors).mean() / count))

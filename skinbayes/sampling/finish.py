@@ -14,14 +14,19 @@ from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.stopping import is_check
 from skinbayes.sampling.target import Target
 
-FIRST_ATTEMPT = 50
+FIRST_ATTEMPT = 25
 """Steps after which importance sampling is tried for the first time; then each time the run is 30 % longer."""
 
 AFTER_REFUSAL = 3
 """Draws that were made and refused are not tried again before the run is so many times longer."""
 
-FOUND = 1.1
-"""Largest R-hat of the ensembles, over the later half of their steps, at which the posterior counts as found."""
+FOUND = 1.3
+"""Largest R-hat of the ensembles, over the later half of their steps, at which a proposal is fitted to them: where they disagree
+a little more than they will, weighted draws tell who is right."""
+
+DRAWS_FOR_EXPLORED, DRAWS_FOR_ESS = 2.5, 8.0
+"""Draws that are made at least for each position that was explored: they cost little more, and are worth far more. But no more
+than so many for each effective draw that was asked for."""
 
 AT_A_TIME = 256
 """Positions that a worker evaluates at a time; a fixed number, so that one seed gives the same with any number of workers."""
@@ -79,7 +84,7 @@ class Finish:
             evaluate,
             options.ess,
             np.random.default_rng([options.seed, 8, steps]),
-            explored,
+            int(min(DRAWS_FOR_EXPLORED * explored, DRAWS_FOR_ESS * options.ess)),
         )
         if isinstance(found, ImportanceDraws):
             return found

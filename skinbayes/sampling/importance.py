@@ -1,11 +1,12 @@
-"""Independent draws by importance sampling, from a proposal fitted to ensembles that have found the posterior.
+"""Independent draws by importance sampling, from proposals fitted to ensembles that have found the posterior.
 
 A walker needs tens of evaluations for an independent draw; a proposal that has the shape of the posterior needs one or two.
-The proposal is a mixture of Student t distributions, fitted to one half of the ensembles and examined with the other. A few
-rounds of draws improve it, weighted as draws of the mixture of all proposals so far (adaptive multiple importance sampling,
-Cornuet et al. 2012, doi 10.1111/j.1467-9469.2011.00756.x). Only draws of the last proposal count: it was fitted to the others,
-which are therefore likelier under it than fresh ones, and ln Z of a normal distribution in 20 dimensions came out 0.02, four
-standard errors, too low with them. The draws are given up where anything speaks against them.
+The proposal is a mixture of Student t distributions, fitted to one half of the ensembles and examined with the other. Rounds of
+draws improve it, and all of them count, weighted as draws of the mixture of all proposals (adaptive multiple importance sampling,
+Cornuet et al. 2012, doi 10.1111/j.1467-9469.2011.00756.x). Draws are likelier under a proposal that was fitted to them than fresh
+ones are, and ln Z of a normal distribution in 20 dimensions came out 0.02, four standard errors, too low so. There are therefore
+two sequences of rounds side by side: the proposals of one are fitted to draws of the other. The draws are given up where anything
+speaks against them.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ from scipy.special import logsumexp, stdtrit
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.draws import weighted_quantiles
 from skinbayes.sampling.stopping import TAIL_FRACTION
-from skinbayes.statistics.annealing import effective_number
 from skinbayes.statistics.pareto import pareto_shape, smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
 
@@ -29,20 +29,21 @@ Evaluate = Callable[[FloatArray], FloatArray]
 POINTS = 2000
 """Explored positions of each ensemble that the mixture is fitted to."""
 
-WIDE_WEIGHT, WIDE_STRETCH = 0.1, 2.5
-"""A component about the whole, so much wider than it, gets this part of all draws."""
+WIDE_WEIGHT, WIDE_VOLUME, LEAST_STRETCH, MOST_STRETCH = 0.2, 250.0, 1.3, 2.5
+"""A component about the whole, of so many times its volume, gets this part of all draws; it is wider by a factor between two. Of
+much more volume it would have hardly any draws where the weights become large."""
 
-ROUNDS = 6
-"""Rounds in which the proposal is improved at most."""
+ROUNDS = 12
+"""Rounds of draws at most."""
 
-TRIES = 5
-"""How often draws are made that are to be accepted; those that were not improve the proposal of the next."""
+GROWTH = 1.5
+"""A round has so many times as many draws as the one before, or fewer if that is enough."""
 
 WORTHWHILE = 0.03
 """Effective draws for each evaluation that are worth to begin with; walkers give as many."""
 
 LARGEST_SHAPE = 0.5
-"""Largest k̂ of the weights, and of the weights in the tails of each coordinate, at which draws are accepted."""
+"""Largest k̂ of the weights, and of those below and above the median of each coordinate, at which draws are accepted."""
 
 TAILS = np.array([0.05, 0.5, 0.95])
 """Quantiles in which ensembles and weighted draws have to agree."""
@@ -57,22 +58,20 @@ class ImportanceDraws:
     positions : shape ``(N, D)``
     log_density : of the target, shape ``(N,)``
     log_weights : Pareto-smoothed, up to a constant, shape ``(N,)``
-    log_proposal : ln of its density, shape ``(N,)``
-    proposal : what they were drawn from
+    log_proposal : ln of the density that they were drawn from, shape ``(N,)``
+    proposals : what either half of them, every second one, was drawn from
     shape : k̂ of the weights
     ess, tail_ess : effective sample sizes of the mean, and the smaller of the 5 % and 95 % quantiles, of each coordinate
-    evaluations : of the target, with those of the rounds before
     """
 
     positions: FloatArray
     log_density: FloatArray
     log_weights: FloatArray
     log_proposal: FloatArray
-    proposal: StudentMixture
+    proposals: tuple[StudentMixture, StudentMixture]
     shape: float
     ess: FloatArray
     tail_ess: FloatArray
-    evaluations: int
 
     def lacking(self, ess: float) -> float:
         """How many times as many draws it takes for an effective sample size; at most 1 if these do."""
@@ -111,87 +110,94 @@ def importance_draws(
         return f"a proposal would give {foreseen:.2g} effective draws for each evaluation", 0
     everything = np.concatenate([first, second])
     mixture = mixture.refitted(everything, np.ones(len(everything)))
-    rounds = _Rounds(explored.shape[-1])
-    size, gain = max(400, 60 * explored.shape[-1]), 0.0
-    for _ in range(ROUNDS):
-        rounds.draw(mixture.with_wide_component(WIDE_WEIGHT, WIDE_STRETCH), size, evaluate, rng)
-        before, gain = gain, effective_number(rounds.log_ratios()) / rounds.count
-        mixture = rounds.improved(mixture, rng)
-        if gain < 1.1 * before:
-            break
-    if gain < WORTHWHILE:
-        return f"draws of the proposal count {gain:.2g} each", rounds.count
-    count = max(int(np.ceil(1.1 * ess / gain)), least - rounds.count, size)
-    for _ in range(TRIES):
-        proposal = mixture.with_wide_component(WIDE_WEIGHT, WIDE_STRETCH)
-        positions = proposal.draw(count, rng)
-        density = evaluate(positions)
-        found = _weighed(positions, density, proposal, rounds.count + count)
-        if (more := found.lacking(ess)) > 1.0:
-            new = proposal.draw(int(np.ceil(min(1.2 * more - 1.0, 10.0) * count)), rng)
-            positions, density = np.concatenate([positions, new]), np.append(density, evaluate(new))
-            found = _weighed(positions, density, proposal, rounds.count + len(positions))
-        against = next(_against(found, explored, explored_density, ess), None)
-        if against is None:
+    sides = (_Rounds(mixture), _Rounds(mixture))
+    size, against = max(200, 30 * explored.shape[-1]), None
+    for number in range(ROUNDS):
+        for side in sides:
+            side.draw(size, evaluate, rng)
+        found = _weighed(sides)
+        count = len(found.positions)
+        lacking = max(found.lacking(ess), least / count)
+        if lacking <= 1.0 and (against := next(_against(found, explored, explored_density), None)) is None:
             return found
-        rounds.add(positions, density, proposal)
-        mixture = rounds.improved(mixture, rng)
-    return str(against), rounds.count
+        if number > 1 and count > (2.0 / WORTHWHILE) * found.ess.min():
+            break
+        fitted = [side.refitted(rng) for side in sides]
+        for side, mixture in zip(sides, reversed(fitted), strict=True):
+            side.mixture = mixture
+        size = int(np.ceil(min(GROWTH * size, max(1.1 * lacking - 1.0, 0.2) * count / 2)))
+    return against or f"the effective sample size of {count} draws is {found.ess.min():.0f}", count
 
 
 class _Rounds:
-    """Draws of several proposals, weighted as draws of their mixture."""
+    """Draws of several proposals, weighted as draws of their mixture.
 
-    def __init__(self, dimension: int) -> None:
-        self.positions = np.empty((0, dimension))
-        self._density = np.empty(0)
+    Attributes
+    ----------
+    mixture : what the next round is drawn from, but for a wide component
+    """
+
+    def __init__(self, mixture: StudentMixture) -> None:
+        self.mixture = mixture
+        self.positions = np.empty((0, mixture.dimension))
+        self.log_density = np.empty(0)
         self._proposals: list[StudentMixture] = []
         self._counts: list[int] = []
 
     @property
-    def count(self) -> int:
-        return len(self.positions)
+    def proposal(self) -> StudentMixture:
+        """What all draws together were drawn from."""
+        return StudentMixture.of(self._proposals, self._counts)
 
-    def draw(
-        self, proposal: StudentMixture, count: int, evaluate: Evaluate, rng: np.random.Generator
-    ) -> None:
+    def draw(self, count: int, evaluate: Evaluate, rng: np.random.Generator) -> None:
+        proposal = _widened(self.mixture)
         new = proposal.draw(count, rng)
-        self.add(new, evaluate(new), proposal)
-
-    def add(self, positions: FloatArray, log_density: FloatArray, proposal: StudentMixture) -> None:
-        self.positions = np.concatenate([self.positions, positions])
-        self._density = np.append(self._density, log_density)
+        self.positions = np.concatenate([self.positions, new])
+        self.log_density = np.append(self.log_density, evaluate(new))
         self._proposals.append(proposal)
-        self._counts.append(len(positions))
+        self._counts.append(count)
 
-    def log_ratios(self) -> FloatArray:
-        mixture = StudentMixture.of(self._proposals, self._counts)
-        return np.asarray(self._density - mixture.log_density(self.positions))
-
-    def improved(self, mixture: StudentMixture, rng: np.random.Generator) -> StudentMixture:
-        """The mixture fitted anew to some of the draws."""
-        log_ratios = self.log_ratios()
+    def refitted(self, rng: np.random.Generator) -> StudentMixture:
+        """The mixture fitted anew to the draws."""
+        log_ratios = self.log_density - self.proposal.log_density(self.positions)
         weights = np.exp(log_ratios - log_ratios.max())
+        count = len(weights)
         # draws with weights far above the others would teach the mixture themselves only
-        weights = np.minimum(weights, weights.sum() / np.sqrt(self.count))
-        if self.count <= 2 * POINTS:
-            return mixture.refitted(self.positions, weights)
-        chosen = rng.choice(self.count, size=2 * POINTS, p=weights / weights.sum())
-        return mixture.refitted(self.positions[chosen], np.ones(chosen.size))
+        weights = np.minimum(weights, weights.sum() / np.sqrt(count))
+        if weights.sum() ** 2 / np.square(weights).sum() < POINTS / 4:
+            return self.mixture.refitted(self.positions, weights)
+        # as many components as they can tell; a draw chosen twice is in one half only
+        part = rng.random(count) < 0.5
+        points = []
+        for chosen in (part, ~part):
+            places = rng.choice(count, size=min(POINTS, count // 2), p=weights * chosen / weights[chosen].sum())
+            points.append(self.positions[places])
+        return fit_mixture(*points, rng)
 
 
-def _weighed(
-    positions: FloatArray, log_density: FloatArray, proposal: StudentMixture, evaluations: int
-) -> ImportanceDraws:
-    log_proposal = proposal.log_density(positions)
+def _widened(mixture: StudentMixture) -> StudentMixture:
+    stretch = np.clip(WIDE_VOLUME ** (1.0 / mixture.dimension), LEAST_STRETCH, MOST_STRETCH)
+    return mixture.with_wide_component(WIDE_WEIGHT, float(stretch))
+
+
+def _weighed(sides: tuple[_Rounds, _Rounds]) -> ImportanceDraws:
+    proposals = (sides[0].proposal, sides[1].proposal)
+    positions, log_density, log_proposal = (
+        np.stack(pair, axis=1).reshape(-1, *pair[0].shape[1:])
+        for pair in (
+            [side.positions for side in sides],
+            [side.log_density for side in sides],
+            [one.log_density(side.positions) for one, side in zip(proposals, sides, strict=True)],
+        )
+    )
     log_weights, shape = smoothed(log_density - log_proposal)
     weights = np.exp(log_weights - log_weights.max())
     mean = weights @ positions / weights.sum()
     ends = np.array([weighted_quantiles(column, weights, TAILS[[0, 2]]) for column in positions.T])
     tails = np.array([_effective((positions <= ends[:, end]).astype(np.float64), weights) for end in (0, 1)])
     return ImportanceDraws(
-        positions, log_density, log_weights, log_proposal, proposal, shape,
-        _effective(positions - mean, weights), tails.min(axis=0), evaluations,
+        positions, log_density, log_weights, log_proposal, proposals, shape,
+        _effective(positions - mean, weights), tails.min(axis=0),
     )  # fmt: skip
 
 
@@ -217,27 +223,24 @@ def _visited(chain: FloatArray, log_density: FloatArray) -> tuple[FloatArray, Fl
 
 
 def _against(
-    found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray, ess: float
+    found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray
 ) -> Iterator[str]:
     """What speaks against accepting draws, one sentence each."""
-    if found.lacking(ess) > 1.0:
-        yield f"the effective sample size stays at {found.ess.min():.0f}"
     if not found.shape <= LARGEST_SHAPE:
         yield f"the weights are too uneven (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted)"
     weights = np.exp(found.log_weights - found.log_weights.max())
-    mean = weights @ found.positions / weights.sum()
-    for column, (x, middle) in enumerate(zip(found.positions.T, mean, strict=True)):
-        for side in (-1.0, 1.0):
-            shape = pareto_shape(weights * np.maximum(side * (x - middle), 0.0))
-            if not shape <= LARGEST_SHAPE:
+    quantiles = np.array([weighted_quantiles(x, weights, TAILS) for x in found.positions.T])
+    for column, (x, ends) in enumerate(zip(found.positions.T, quantiles, strict=True)):
+        for tail in (x <= ends[1], x >= ends[1]):
+            if not (shape := pareto_shape(weights[tail])) <= LARGEST_SHAPE:
                 yield f"the weights are too uneven in a tail of coordinate {column + 1} (Pareto k {shape:.2f})"
     # where the proposal is missing something that ensembles have found, their ratios exceed all those of the draws
     highest = (found.log_density - found.log_proposal).max()
-    quantiles = np.array([weighted_quantiles(x, weights, TAILS) for x in found.positions.T])
     below = []
     for chain, density in zip(explored, explored_density, strict=True):
         visited, its_density = _visited(chain, density)
-        beyond = its_density - found.proposal.log_density(visited) > highest
+        proposal = StudentMixture.of(found.proposals, [1, 1]).log_density(visited)
+        beyond = its_density - proposal > highest
         # one walker that hardly moved is no mode
         if beyond.sum() >= 5 and beyond.mean() > 0.01:
             yield f"{beyond.mean():.0%} of the positions of an ensemble lie where the proposal has hardly any draws"

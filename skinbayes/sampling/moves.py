@@ -72,9 +72,9 @@ def few_walkers_moves() -> WeightedMoves:
     ]
 
 
-def moves_for(expensive: bool) -> MoveFactory:
-    """The moves of targets that are expensive to evaluate, or of others."""
-    return few_walkers_moves if expensive else default_moves
+def moves_for(few_walkers: bool) -> MoveFactory:
+    """The moves of small ensembles, or of others."""
+    return few_walkers_moves if few_walkers else default_moves
 
 
 def _independence_move(propose: Proposal) -> Any:

@@ -63,12 +63,12 @@ class SamplerOptions(EngineOptions):
     ----------
     ensembles : number of independent ensembles; they are the chains of R-hat, and what ``cores`` share
     walkers : walkers of each ensemble, even and at least twice the dimension; None is
-        :data:`DEFAULT_WALKERS` or four times the dimension, whichever is larger; in place of the first
-        :data:`FEWER_WALKERS` if ``expensive``, :data:`EXPLORING_WALKERS` with ``importance``
+        :data:`EXPLORING_WALKERS` or four times the dimension, whichever is larger; in place of the first
+        :data:`DEFAULT_WALKERS` without ``importance``, :data:`FEWER_WALKERS` if ``expensive`` too
     r_hat : largest acceptable rank-normalised split R-hat between ensembles
     steps_over_tau : kept steps, summed over the ensembles, must reach this many autocorrelation times
     max_steps : steps of each ensemble after which the run ends, converged or not (a total: resuming does not add)
-    block_steps : steps between two writes to the store; None is :data:`BLOCK_STEPS` (:data:`EXPLORING_BLOCK_STEPS` with
+    block_steps : steps between two writes to the store; None is :data:`EXPLORING_BLOCK_STEPS` (:data:`BLOCK_STEPS` without
         ``importance``)
     importance : let the walkers only find the posterior, and draw from it by importance sampling as soon as that is accepted
         (see ``skinbayes.sampling.importance``); also gives ln of the evidence
@@ -76,8 +76,8 @@ class SamplerOptions(EngineOptions):
     Examples
     --------
     >>> SamplerOptions(seed=1).walkers_for(dimension=5)
-    128
-    >>> SamplerOptions(seed=1).walkers_for(dimension=40)
+    32
+    >>> SamplerOptions(seed=1, importance=False).walkers_for(dimension=40)
     160
     """
 
@@ -87,7 +87,7 @@ class SamplerOptions(EngineOptions):
     steps_over_tau: float = 50.0
     max_steps: int = 10_000
     block_steps: int = None  # type: ignore[assignment]  # filled in below
-    importance: bool = False
+    importance: bool = True
 
     def __post_init__(self) -> None:
         super().__post_init__()
