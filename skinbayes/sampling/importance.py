@@ -170,7 +170,9 @@ class _Rounds:
         part = rng.random(count) < 0.5
         points = []
         for chosen in (part, ~part):
-            places = rng.choice(count, size=min(POINTS, count // 2), p=weights * chosen / weights[chosen].sum())
+            places = rng.choice(
+                count, size=min(POINTS, count // 2), p=weights * chosen / weights[chosen].sum()
+            )
             points.append(self.positions[places])
         return fit_mixture(*points, rng)
 
@@ -222,9 +224,7 @@ def _visited(chain: FloatArray, log_density: FloatArray) -> tuple[FloatArray, Fl
     return chain[places], log_density[places]
 
 
-def _against(
-    found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray
-) -> Iterator[str]:
+def _against(found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray) -> Iterator[str]:
     """What speaks against accepting draws, one sentence each."""
     if not found.shape <= LARGEST_SHAPE:
         yield f"the weights are too uneven (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted)"
