@@ -20,8 +20,13 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Sample anew without a person, a liquid, … where importance sampling cannot leave it out.",
 )
+@click.option(
+    "--sensitivity",
+    is_flag=True,
+    help="Sample anew with wider priors where the draws cannot tell whether the evidence would still prefer the same model.",
+)
 @json_option
-def compare(runs: tuple[str, ...], refit: bool, as_json: bool) -> None:
+def compare(runs: tuple[str, ...], refit: bool, sensitivity: bool, as_json: bool) -> None:
     """Compare models by what they predict for data left out.
 
     Runs on different data are refused.
@@ -34,8 +39,8 @@ def compare(runs: tuple[str, ...], refit: bool, as_json: bool) -> None:
     from skinbayes.fit import load_fit
 
     fits = [load_fit(run) for run in runs]
-    with counted_progress("refits") as progress:
-        result = compare_fits(fits, refit=refit, progress=progress)
+    with counted_progress("widths of priors" if sensitivity and not refit else "refits") as progress:
+        result = compare_fits(fits, refit=refit, progress=progress, sensitivity=sensitivity)
     if as_json:
         print_json(result.to_dict())
         return

@@ -3,6 +3,7 @@
 from skinbayes.comparison.baselines import against_baselines
 from skinbayes.comparison.models import ComparedModel, Comparison, compare
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
+from skinbayes.comparison.prior_widths import PriorWidths, WidthScan
 from skinbayes.comparison.ranking import AgainstBaselines, RankedAgainst
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut, LeftOutLevel
 from skinbayes.comparison.weights import stacking_weights
@@ -15,7 +16,9 @@ __all__ = [
     "LeftOut",
     "LeftOutLevel",
     "NoiseFloor",
+    "PriorWidths",
     "RankedAgainst",
+    "WidthScan",
     "against_baselines",
     "compare",
     "noise_floor",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import softmax
 
+from skinbayes.comparison.prior_widths import PriorWidths, prior_widths
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut, RefitProgress, Scores, difference, score
 from skinbayes.comparison.verdicts import (
     few_levels,
@@ -70,11 +71,13 @@ class Comparison:
     models : best first
     rows : number of data
     grouped_by : grouping columns that have effects in one of the models
+    prior_widths : what the evidence owes to the width of priors
     """
 
     models: tuple[ComparedModel, ...]
     rows: int
     grouped_by: tuple[str, ...] = ()
+    prior_widths: PriorWidths = PriorWidths()
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -95,7 +98,7 @@ class Comparison:
                 said.append(
                     f"'{best.name}' predicts left-out data better than '{other.name}', by {gap:.1f} ± {error:.1f}."
                 )
-        said += self._on_evidence()
+        said += [*self._on_evidence(), *self.prior_widths.sentences()]
         if self.grouped_by:
             said.append(pointwise_question(self.grouped_by))
         if self.rows < FEW_ROWS:
@@ -165,11 +168,17 @@ class Comparison:
         return {
             "models": [model.to_dict() for model in self.models],
             "rows": self.rows,
+            "prior_widths": self.prior_widths.to_dict(),
             "sentences": self.sentences(),
         }
 
 
-def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | None = None) -> Comparison:
+def compare(
+    fits: Sequence[Fit],
+    refit: bool = False,
+    progress: RefitProgress | None = None,
+    sensitivity: bool = False,
+) -> Comparison:
     """Compare fits by what they predict for data left out.
 
     Single data by Pareto-smoothed importance-sampling leave-one-out cross-validation, Vehtari, Gelman & Gabry 2017,
@@ -182,6 +191,8 @@ def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | 
     fits : two or more fits of the same data
     refit : sample a model anew without a level of a grouping column where importance sampling cannot leave it out
     progress : called before the first and after every refit of a model, with the number done and their total
+    sensitivity : sample a model anew with wider priors where the draws cannot tell whether the evidence would still prefer the
+        same model
 
     Returns
     -------
@@ -212,7 +223,8 @@ def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | 
                 f"'{reference.name}' and '{fit.name}' were fitted to different data "
                 f"({_describe(reference)}; {_describe(fit)}); only models of the same rows can be compared"
             )
-    return compare_scores([score(fit, refit, progress) for fit in fits], grouped_by(fits))
+    compared = compare_scores([score(fit, refit, progress) for fit in fits], grouped_by(fits))
+    return replace(compared, prior_widths=prior_widths(fits, sensitivity, progress if sensitivity else None))
 
 
 def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> Comparison:

@@ -13,6 +13,9 @@ from skinbayes.arrays import FloatArray
 if TYPE_CHECKING:
     import xarray
 
+POWER = 0.01
+"""By how much the power of prior or likelihood differs from 1."""
+
 
 def arviz() -> Any:
     """Import ArviZ (seconds; so only where it is needed) without its notice about the coming version."""
@@ -47,6 +50,47 @@ def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
         if len(samples) > 1:
             found["r_hat"] = az.rhat(chains)
     return {name: np.asarray(values["x"].values, dtype=float) for name, values in found.items()}
+
+
+def power_scaling(
+    draws: FloatArray, log_prior: FloatArray, log_likelihood: FloatArray
+) -> dict[str, FloatArray]:
+    """How much the distribution of each parameter changes as prior or likelihood are raised to a power near 1.
+
+    Kallioinen, Paananen, Bürkner & Vehtari 2024, doi 10.1007/s11222-023-10366-5: the cumulative Jensen–Shannon distance for each
+    doubling of the power.
+
+    Parameters
+    ----------
+    draws : of D parameters, shape ``(N, D)``
+    log_prior, log_likelihood : at each draw, shape ``(N,)``
+
+    Returns
+    -------
+    dict
+        ``prior`` and ``likelihood``, each ``(D,)``
+    """
+    import xarray
+
+    az = arviz()
+    groups = {
+        "posterior": xarray.Dataset({"x": (("chain", "draw", "part"), draws[np.newaxis])}),
+        "log_prior": xarray.Dataset({"x": (("chain", "draw"), log_prior[np.newaxis])}),
+        "log_likelihood": xarray.Dataset({"x": (("chain", "draw"), log_likelihood[np.newaxis])}),
+    }
+    data, found = to_arviz(groups), {}
+    for name in ("prior", "likelihood"):
+        if np.ptp(groups[f"log_{name}"]["x"].values) < 1e-9:  # a flat component changes nothing
+            found[name] = np.zeros(draws.shape[1])
+            continue
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if hasattr(az, "psens"):
+                values = az.psens(data, component=name, delta=POWER)
+            else:
+                values = az.psense(data, group=name, alphas=(1 / (1 + POWER), 1 + POWER))
+        found[name] = np.asarray(values["x"].values, dtype=float)
+    return found
 
 
 def standard_error(pointwise: FloatArray) -> float:

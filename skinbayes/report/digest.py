@@ -30,7 +30,8 @@ def digest(fit: Fit) -> dict[str, Any]:
         means, and the fraction of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of
         each effect, the scale over the noise, the fraction of the variance), ``ridges`` (pairs of parameters, exponent, the
         combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
-        checks of its residuals along columns that simulated data hardly ever meet, the most surprising first). Quantities in SI.
+        checks of its residuals along columns that simulated data hardly ever meet, the most surprising first),
+        ``prior_sensitivity`` (what other priors would change; null if model or data are gone). Quantities in SI.
     """
     names = row_names(fit)
     return {
@@ -49,4 +50,5 @@ def digest(fit: Fit) -> dict[str, Any]:
             name: [asdict(check) for check in checks if check.found]
             for name, checks in residual_trends(fit).items()
         },
+        "prior_sensitivity": None if fit.problem is None else fit.prior_sensitivity().to_dict(),
     }

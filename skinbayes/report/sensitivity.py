@@ -1,0 +1,72 @@
+"""What evidence and posterior owe to the priors: the table and the sentences of page and terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
+    from skinbayes.fit.prior_sensitivity import ChangedPrior, PriorSensitivity
+
+HEADERS = (
+    "prior of",
+    "ln evidence, half",
+    "twice",
+    "median moves, half",
+    "twice",
+    "interval, half",
+    "twice",
+    "prior, likelihood",
+    "speaks",
+)
+
+EXPLAINED = (
+    "half, twice: with a prior half and twice as wide. ln evidence: its change, ± standard error. median moves, interval: the median "
+    "of the same parameter moves by so many posterior standard deviations, and its 90 % interval is so many times as wide (of all "
+    "together, those that change most). prior, likelihood: how much the posterior changes as all priors, or the likelihood, are "
+    "raised to a power near 1; from 0.05 on that counts. –: these draws cannot tell. *: sampled anew."
+)
+
+
+def sensitivity_rows(found: PriorSensitivity) -> list[list[str]]:
+    """Rows of the table below :data:`HEADERS`, parameters by their names; all priors together at the end."""
+    informed = {entry.name: entry for entry in found.informed}
+    rows = []
+    for labels in dict.fromkeys(entry.labels for entry in found.changed):
+        pair = [found.of(labels, factor) for factor in (0.5, 2.0)]
+        own = informed[labels[0]] if len(labels) == 1 else None
+        rows.append(
+            [
+                labels[0] if own else "all together",
+                *(_change(entry) for entry in pair),
+                *(_of(entry, *entry.furthest, "{:+.2f}") for entry in pair),
+                *(_of(entry, *entry.stretched, "× {:.2f}") for entry in pair),
+                *((f"{own.prior:.2f}, {own.likelihood:.2f}", own.speaks) if own else ("", "")),
+            ]
+        )
+    return rows
+
+
+def page_sensitivity(fit: Fit) -> tuple[list[list[str]], list[str]]:
+    """Table and sentences of a fit without anything sampled anew; empty if its model or data are gone."""
+    if fit.problem is None:
+        return [], []
+    found = fit.prior_sensitivity()
+    return sensitivity_rows(found), found.sentences()
+
+
+def _change(entry: ChangedPrior) -> str:
+    if not entry.reliable:
+        return "–"
+    star = "*" if entry.refitted else ""
+    return f"{entry.log_evidence_change:+.2f} ± {entry.error:.2f}{star}"
+
+
+def _of(entry: ChangedPrior, name: str, value: float, form: str) -> str:
+    """A change of the parameter whose prior was changed, or of the one named, if all priors were."""
+    if not entry.reliable:
+        return "–"
+    if len(entry.labels) > 1:
+        return f"{form.format(value)} ({name})"
+    own = entry.shifts if "+" in form else entry.width_ratios
+    return form.format(own[entry.labels[0]])
