@@ -77,7 +77,7 @@ class Comparison:
     models: tuple[ComparedModel, ...]
     rows: int
     grouped_by: tuple[str, ...] = ()
-    prior_widths: PriorWidths = PriorWidths()
+    prior_widths: PriorWidths = field(default_factory=PriorWidths)
 
     @property
     def columns(self) -> tuple[str, ...]:

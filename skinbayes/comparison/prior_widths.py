@@ -41,8 +41,8 @@ class WidthScan:
     preferred, other : the models; the evidence prefers the first as their priors are
     log_bayes_factor, error : ln of the ratio of their evidences, and its standard error
     narrower, wider : the same with priors half and twice as wide; None if that is not known
-    turns_at : how many times further the priors reach where the preference turns – larger, where they are of quantities that begin
-        at zero; larger or smaller, where they are of logarithms; wider for others. None if it does not as far as is known
+    turns_at : how many times further the priors reach where the preference turns, in the sense of ``kind``; None if it does not
+        as far as is known
     known_to : largest factor up to which the draws tell
     held : what cannot be made as wide, in words
     """
@@ -100,8 +100,8 @@ class PriorWidths:
         if not only_widths:
             return f"{what}: their Bayes factor judges these priors, not the physics."
         return (
-            f"WARNING: {what}, which differ in their width only. Their Bayes factor is a choice of the prior and says nothing about "
-            "the data: make a prior wide enough, and its model loses against any other."
+            f"WARNING: {what}, which differ in their width only. Their Bayes factor is a choice of the prior and says nothing "
+            "about the data: make a prior wide enough, and its model loses against any other."
         )
 
     def _on_pair(self, preferred: str, other: str) -> list[str]:
@@ -188,9 +188,9 @@ def _scan(
         return value
 
     def reaching(reach: float, refit: bool = False) -> float | None:
-        return with_factors([o.factors(l, reach) for o, l in zip(pair, labels, strict=True)], refit)
+        return with_factors([o.factors(some, reach) for o, some in zip(pair, labels, strict=True)], refit)
 
-    narrower, wider = (with_factors([dict.fromkeys(l, f) for l in labels], True) for f in (0.5, 2.0))
+    narrower, wider = (with_factors([dict.fromkeys(some, f) for some in labels], True) for f in (0.5, 2.0))
     any(reaching(reach, refit=True) is not None for reach in SAMPLED)
     values = {1.0: gap}
     for reach in REACH:

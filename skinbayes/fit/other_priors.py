@@ -15,7 +15,7 @@ from skinbayes.problem import Problem
 from skinbayes.problem.other_priors import possible_range, priors_of, with_priors
 from skinbayes.sampling.draws import Draws, weighted_quantiles
 from skinbayes.statistics.priors import Prior
-from skinbayes.statistics.reweighting import reweighted
+from skinbayes.statistics.reweighting import quantile_errors, reweighted
 from skinbayes.statistics.widening import BOUNDED, LOGARITHMIC, factor_of_reach, widened
 
 REFIT_ESS, REFIT_STEPS = 1000.0, 1000
@@ -40,10 +40,14 @@ class _Weighted:
     error: float = 0.0
     evidence: tuple[float, float] | None = None
 
-    def quantiles(self, place: int, logarithmic: bool, probabilities: Sequence[float]) -> FloatArray:
+    def quantiles(
+        self, place: int, logarithmic: bool, probabilities: Sequence[float]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Of one parameter, or its logarithm, and their standard errors."""
         values = np.log(self.theta[:, place]) if logarithmic else self.theta[:, place]
         weights = np.exp(self.log_weights - self.log_weights.max())
-        return weighted_quantiles(values, weights, probabilities)
+        errors = quantile_errors(values, weights, probabilities) * np.sqrt(self.correlation)
+        return weighted_quantiles(values, weights, probabilities), errors
 
 
 @dataclass(frozen=True)
@@ -128,8 +132,11 @@ class OtherPriors:
 
     def quantiles(
         self, found: UnderOtherPriors | None, label: str, probabilities: Sequence[float]
-    ) -> FloatArray:
-        """Posterior quantiles of a parameter (of its logarithm, where its prior is stated for that); of the fit itself for None."""
+    ) -> tuple[FloatArray, FloatArray]:
+        """Posterior quantiles of a parameter and their standard errors; of the fit itself for None.
+
+        They are those of its logarithm where its prior is stated for that.
+        """
         draws = self.own if found is None else found.draws
         assert draws is not None
         return draws.quantiles(self.names.index(label), self.logarithmic(label), probabilities)

@@ -1,10 +1,10 @@
-"""What would change with other priors: evidence and posterior with priors half and twice as wide, and who speaks, prior or data."""
+"""What would change with other priors: evidence and posterior with each half and twice as wide; and who speaks, prior or data."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from math import log
+from math import hypot, log
 from typing import Any, Literal
 
 import numpy as np
@@ -44,9 +44,9 @@ class ChangedPrior:
     labels : parameters whose priors were made wider or narrower
     factor : how many times as wide
     log_evidence_change, error : of ln of the evidence, and its standard error
-    shifts : of the median of each parameter, in standard deviations of its posterior; of its logarithm, where its prior is stated
-        for that
-    width_ratios : of the 90 % interval of each parameter, in the same terms, to what it was
+    shifts : of the median of each parameter, in standard deviations of its posterior, and its standard error; of its logarithm,
+        where its prior is stated for that
+    width_ratios : of the 90 % interval of each parameter, in the same terms, to what it was, and its standard error
     pareto_k : of the weights
     reliable : whether these numbers can be trusted; shifts and widths are empty otherwise
     refitted : whether the model was sampled anew
@@ -57,22 +57,29 @@ class ChangedPrior:
     factor: float
     log_evidence_change: float
     error: float
-    shifts: dict[str, float]
-    width_ratios: dict[str, float]
+    shifts: dict[str, tuple[float, float]]
+    width_ratios: dict[str, tuple[float, float]]
     pareto_k: float
     reliable: bool
     refitted: bool
     held: tuple[str, ...]
 
     @property
-    def furthest(self) -> tuple[str, float]:
-        """The parameter whose median moves most, and how far; no name and 0 if unknown."""
-        return max(self.shifts.items(), key=lambda entry: abs(entry[1]), default=("", 0.0))
+    def furthest(self) -> tuple[str, float, float]:
+        """The parameter whose median moves most, how far, and the standard error; no name and 0 if unknown."""
+        return _extreme(self.shifts, 0.0, abs)
 
     @property
-    def stretched(self) -> tuple[str, float]:
-        """The parameter whose interval changes its width most, and its ratio; no name and 1 if unknown."""
-        return max(self.width_ratios.items(), key=lambda entry: abs(log(entry[1])), default=("", 1.0))
+    def stretched(self) -> tuple[str, float, float]:
+        """The parameter whose interval changes its width most, its ratio, and the standard error; no name and 1 if unknown."""
+        return _extreme(self.width_ratios, 1.0, lambda ratio: abs(log(ratio)))
+
+
+def _extreme(
+    found: dict[str, tuple[float, float]], nothing: float, size: Callable[[float], float]
+) -> tuple[str, float, float]:
+    name = max(found, key=lambda label: size(found[label][0]), default="")
+    return (name, *found.get(name, (nothing, 0.0)))
 
 
 @dataclass(frozen=True)
@@ -83,9 +90,9 @@ class Informed:
     ----------
     name : the parameter
     prior, likelihood : power-scaling sensitivities of its posterior to all priors and to the likelihood
-    speaks : ``"data"``; ``"both"`` prior and data; ``"conflict"`` if both do, and the posterior median lies in a tail of the prior;
-        ``"others"`` if the data narrow it down, but only together with others, whose priors say how far; ``"prior"`` if the data
-        leave it as it was
+    speaks : ``"data"``; ``"both"`` prior and data; ``"conflict"`` if both do, and the posterior median lies in a tail of the
+        prior; ``"others"`` if the data narrow it down, but only together with others, whose priors say how far; ``"prior"`` if
+        the data leave it as it was
     """
 
     name: str
@@ -133,8 +140,8 @@ class PriorSensitivity:
             said.append(f"Only the prior speaks about {and_list(names)}.")
         if names := by.get("others"):
             said.append(
-                f"The data know {and_list(names)} together with other parameters only: how well is a matter of the priors, and more "
-                "of the same data would hardly help."
+                f"The data know {and_list(names)} together with other parameters only: how well is a matter of the priors, and "
+                "more of the same data would hardly help."
             )
         if names := by.get("conflict"):
             said.append(
@@ -157,23 +164,24 @@ class PriorSensitivity:
         wide = sorted(known, key=lambda entry: -abs(log(entry.stretched[1])))
         said = []
         for entry in far[:MOST_SAID]:
-            name, shift = entry.furthest
-            if abs(shift) >= LARGE_SHIFT:
+            name, shift, error = entry.furthest
+            if abs(shift) >= max(LARGE_SHIFT, 2 * error):
                 said.append(
                     f"With a prior of {entry.labels[0]} {_width(entry.factor)}, {_its('median', name, entry)} moves "
-                    f"{'up' if shift > 0 else 'down'} by {abs(shift):.2f} posterior standard deviations."
+                    f"{'up' if shift > 0 else 'down'} by {abs(shift):.2f} ± {error:.2f} posterior standard deviations."
                 )
         if not said:
+            _, shift, error = far[0].furthest
             said.append(
-                f"With single priors half or twice as wide no median moves by more than {max(abs(far[0].furthest[1]), 0.01):.2f} "
-                "posterior standard deviations."
+                f"With single priors half or twice as wide no median moves by more than {abs(shift):.2f} ± {error:.2f} posterior "
+                "standard deviations."
             )
         for entry in wide[:MOST_SAID]:
-            name, ratio = entry.stretched
-            if not 1 / LARGE_STRETCH < ratio < LARGE_STRETCH:
+            name, ratio, error = entry.stretched
+            if abs(log(ratio)) >= max(log(LARGE_STRETCH), 2 * error / ratio):
                 said.append(
                     f"With a prior of {entry.labels[0]} {_width(entry.factor)}, {_its('90 % interval', name, entry)} is "
-                    f"{ratio:.2f} times as wide."
+                    f"{ratio:.2f} ± {error:.2f} times as wide."
                 )
         return said
 
@@ -183,8 +191,8 @@ class PriorSensitivity:
             return []
         worst = max(known, key=lambda entry: abs(entry.log_evidence_change))
         said = (
-            f"ln of the evidence changes by {worst.log_evidence_change:+.2f} at most when one prior is made half or twice as wide "
-            f"(that of {worst.labels[0]}, {_width(worst.factor)})"
+            f"ln of the evidence changes by {worst.log_evidence_change:+.2f} at most when one prior is made half or twice as "
+            f"wide (that of {worst.labels[0]}, {_width(worst.factor)})"
         )
         together = [e for e in self.changed if len(e.labels) > 1 and e.reliable]
         several = [f"{e.log_evidence_change:+.2f} with all {_width(e.factor)}" for e in together]
@@ -231,7 +239,7 @@ def prior_sensitivity(
 ) -> PriorSensitivity:
     """Find out what a fit owes to its priors, see :meth:`skinbayes.Fit.prior_sensitivity`."""
     other = OtherPriors(fit, refit)
-    groups = [(name,) for name in other.names]
+    groups: list[tuple[str, ...]] = [(name,) for name in other.names]
     if len(groups) > 1:
         groups.append(other.names)
     wanted = [(labels, factor) for labels in groups for factor in FACTORS]
@@ -255,10 +263,10 @@ def _changed(
 ) -> ChangedPrior:
     shifts, widths = {}, {}
     for label in other.names if found.reliable else ():
-        before = other.quantiles(None, label, PROBABILITIES)
-        after = other.quantiles(found, label, PROBABILITIES)
-        shifts[label] = float((after[2] - before[2]) / ((before[3] - before[1]) / 2))
-        widths[label] = float((after[4] - after[0]) / (before[4] - before[0]))
+        (before, _), (after, errors) = (other.quantiles(x, label, PROBABILITIES) for x in (None, found))
+        spread, width = (before[3] - before[1]) / 2, before[4] - before[0]
+        shifts[label] = float((after[2] - before[2]) / spread), float(errors[2] / spread)
+        widths[label] = float((after[4] - after[0]) / width), float(hypot(errors[0], errors[4]) / width)
     return ChangedPrior(
         labels, factor, found.change, found.error, shifts, widths, found.pareto_k, found.reliable,
         found.refitted, found.held,

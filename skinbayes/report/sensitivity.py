@@ -21,10 +21,10 @@ HEADERS = (
 )
 
 EXPLAINED = (
-    "half, twice: with a prior half and twice as wide. ln evidence: its change, ± standard error. median moves, interval: the median "
-    "of the same parameter moves by so many posterior standard deviations, and its 90 % interval is so many times as wide (of all "
-    "together, those that change most). prior, likelihood: how much the posterior changes as all priors, or the likelihood, are "
-    "raised to a power near 1; from 0.05 on that counts. –: these draws cannot tell. *: sampled anew."
+    "half, twice: with a prior half and twice as wide, ± standard error. ln evidence: its change. median moves, interval: the "
+    "median of the same parameter moves by so many posterior standard deviations, and its 90 % interval is so many times as "
+    "wide (of all together: what changes most). prior, likelihood: how much the posterior changes as all priors, or the "
+    "likelihood, are raised to a power near 1; from 0.05 on that counts. –: these draws cannot tell. *: sampled anew."
 )
 
 
@@ -39,8 +39,8 @@ def sensitivity_rows(found: PriorSensitivity) -> list[list[str]]:
             [
                 labels[0] if own else "all together",
                 *(_change(entry) for entry in pair),
-                *(_of(entry, *entry.furthest, "{:+.2f}") for entry in pair),
-                *(_of(entry, *entry.stretched, "× {:.2f}") for entry in pair),
+                *(_shown(entry, entry.shifts, entry.furthest, "{:+.2f} ± {:.2f}") for entry in pair),
+                *(_shown(entry, entry.width_ratios, entry.stretched, "× {:.2f} ± {:.2f}") for entry in pair),
                 *((f"{own.prior:.2f}, {own.likelihood:.2f}", own.speaks) if own else ("", "")),
             ]
         )
@@ -62,11 +62,10 @@ def _change(entry: ChangedPrior) -> str:
     return f"{entry.log_evidence_change:+.2f} ± {entry.error:.2f}{star}"
 
 
-def _of(entry: ChangedPrior, name: str, value: float, form: str) -> str:
-    """A change of the parameter whose prior was changed, or of the one named, if all priors were."""
+def _shown(
+    entry: ChangedPrior, changes: dict[str, tuple[float, float]], most: tuple[str, float, float], form: str
+) -> str:
+    """A change of the parameter whose prior was changed, or the largest, if all priors were."""
     if not entry.reliable:
         return "–"
-    if len(entry.labels) > 1:
-        return f"{form.format(value)} ({name})"
-    own = entry.shifts if "+" in form else entry.width_ratios
-    return form.format(own[entry.labels[0]])
+    return form.format(*(changes[entry.labels[0]] if len(entry.labels) == 1 else most[1:]))

@@ -8,7 +8,7 @@ from math import inf, log10
 import numpy as np
 from scipy.special import logsumexp
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.statistics.annealing import effective_number
 from skinbayes.statistics.pareto import smoothed
 
@@ -78,3 +78,28 @@ def reweighted(log_weights: FloatArray, log_ratios: FloatArray, correlation: flo
     share = np.exp(after - logsumexp(after)) - before / before.sum()
     error = float(np.sqrt(correlation * np.square(share).sum()))
     return Reweighted(after, value, error, shape, shape <= largest_shape(effective))
+
+
+def quantile_errors(values: FloatArray, weights: FloatArray, probabilities: ArrayLike) -> FloatArray:
+    """Standard errors of quantiles of independent draws with weights.
+
+    From the error of the weighted part of the draws below, and the distance of the quantiles that far apart.
+
+    Parameters
+    ----------
+    values, weights : shape ``(n,)``; the weights need no norm
+    probabilities : between 0 and 1, shape ``(q,)``
+
+    Examples
+    --------
+    >>> draws = np.random.default_rng(1).normal(size=10_000)
+    >>> print(quantile_errors(draws, np.ones(draws.size), [0.5]).round(3))  # √(π/2)/100
+    [0.012]
+    """
+    order = np.argsort(values)
+    x, share = values[order], weights[order] / weights.sum()
+    heights = np.cumsum(share) - share / 2
+    p = np.asarray(probabilities, dtype=float)[:, np.newaxis]
+    error = np.sqrt((np.square(share) * np.square((heights <= p) - p)).sum(axis=1))
+    p = p[:, 0]
+    return np.asarray((np.interp(p + error, heights, x) - np.interp(p - error, heights, x)) / 2)

@@ -1,10 +1,10 @@
 """Priors of the same kind and middle, but wider or narrower.
 
-What "twice as wide" means: the standard deviation or scale is twice as large – of the logarithm for ``lognormal``; cut-offs stay
-where they are. ``uniform`` and ``loguniform`` reach twice as far from their middle, the latter in logarithms, but not beyond what
-is possible. Families that begin at zero and have nothing but a scale get twice that scale, so that their mean grows too. ``gamma``
-keeps its mean as long as its density stays finite at zero, and then its shape. ``beta`` is raised to the power 1/4, which is what
-doubles the standard deviation of a normal distribution, unless its density is infinite at an end: then it is left as it is.
+What "twice as wide" means: the standard deviation or scale is twice as large – of the logarithm for ``lognormal``; cut-offs
+stay where they are. ``uniform`` and ``loguniform`` reach twice as far from their middle, the latter in logarithms, but not beyond
+what is possible. Families that begin at zero and have nothing but a scale get twice that scale, so that their mean grows too.
+``gamma`` keeps its mean as long as its density stays finite at zero, and then its shape. ``beta`` is raised to the power 1/4, as
+doubles the standard deviation of a normal distribution, unless its density is infinite at an end: then it stays as it is.
 """
 
 from __future__ import annotations
