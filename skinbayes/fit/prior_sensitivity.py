@@ -161,7 +161,9 @@ class PriorSensitivity:
         if not known:
             return []
         far = sorted(known, key=lambda entry: -abs(entry.furthest[1]))
-        wide = sorted(known, key=lambda entry: -abs(log(entry.stretched[1])))
+        silent = [informed.name for informed in self.informed if informed.speaks == "prior"]
+        heard = [entry for entry in known if entry.labels[0] not in silent]
+        wide = sorted(heard, key=lambda entry: -abs(log(entry.stretched[1])))
         said = []
         for entry in far[:MOST_SAID]:
             name, shift, error = entry.furthest

@@ -9,6 +9,7 @@ from skinbayes.plot.predictive import row_names
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.groups import group_findings
 from skinbayes.report.ridges import posterior_ridges
+from skinbayes.report.sensitivity import brief_sensitivity
 from skinbayes.report.trends import residual_trends
 from skinbayes.report.validity import flags
 
@@ -31,7 +32,8 @@ def digest(fit: Fit) -> dict[str, Any]:
         each effect, the scale over the noise, the fraction of the variance), ``ridges`` (pairs of parameters, exponent, the
         combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
         checks of its residuals along columns that simulated data hardly ever meet, the most surprising first),
-        ``prior_sensitivity`` (what other priors would change; null if model or data are gone). Quantities in SI.
+        ``prior_sensitivity`` (parameter to what its prior half and twice as wide would change; None if model or data are gone).
+        Quantities in SI.
     """
     names = row_names(fit)
     return {
@@ -50,5 +52,5 @@ def digest(fit: Fit) -> dict[str, Any]:
             name: [asdict(check) for check in checks if check.found]
             for name, checks in residual_trends(fit).items()
         },
-        "prior_sensitivity": None if fit.problem is None else fit.prior_sensitivity().to_dict(),
+        "prior_sensitivity": brief_sensitivity(fit),
     }

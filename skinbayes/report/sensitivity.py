@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -19,6 +19,8 @@ HEADERS = (
     "prior, likelihood",
     "speaks",
 )
+
+TOGETHER = "all together"
 
 EXPLAINED = (
     "half, twice: with a prior half and twice as wide, ± standard error. ln evidence: its change. median moves, interval: the "
@@ -37,7 +39,7 @@ def sensitivity_rows(found: PriorSensitivity) -> list[list[str]]:
         own = informed[labels[0]] if len(labels) == 1 else None
         rows.append(
             [
-                labels[0] if own else "all together",
+                labels[0] if own else TOGETHER,
                 *(_change(entry) for entry in pair),
                 *(_shown(entry, entry.shifts, entry.furthest, "{:+.2f} ± {:.2f}") for entry in pair),
                 *(_shown(entry, entry.width_ratios, entry.stretched, "× {:.2f} ± {:.2f}") for entry in pair),
@@ -53,6 +55,29 @@ def page_sensitivity(fit: Fit) -> tuple[list[list[str]], list[str]]:
         return [], []
     found = fit.prior_sensitivity()
     return sensitivity_rows(found), found.sentences()
+
+
+def brief_sensitivity(fit: Fit) -> dict[str, Any] | None:
+    """The same for machines, without what the prior of one parameter does to others; None if model or data are gone."""
+    if fit.problem is None:
+        return None
+    found = fit.prior_sensitivity()
+    informed = {entry.name: entry for entry in found.informed}
+    document: dict[str, Any] = {}
+    for entry in found.changed:
+        alone = len(entry.labels) == 1
+        name = entry.labels[0] if alone else TOGETHER
+        part = document.setdefault(name, {})
+        values = {"log_evidence_change": entry.log_evidence_change, "error": entry.error}
+        if alone:
+            values |= (
+                {"shift": entry.shifts[name][0], "width_ratio": entry.width_ratios[name][0]}
+                if entry.reliable
+                else {}
+            )
+            part |= {key: getattr(informed[name], key) for key in ("speaks", "prior", "likelihood")}
+        part["half" if entry.factor < 1 else "twice"] = values if entry.reliable else None
+    return document
 
 
 def _change(entry: ChangedPrior) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import multivariate_normal
+from scipy.stats import multivariate_normal, norm
 
 from skinbayes.fit import Fit
 from skinbayes.forward import ForwardModel
@@ -30,7 +30,7 @@ MODEL = ForwardModel(
 
 @dataclass(frozen=True)
 class Known:
-    """Priors of ln a and ln b are normal with these means and standard deviations; the noise of ln μ has a known width."""
+    """Priors of ln a and ln b are normal with these means and standard deviations, 0 is fixed; ln μ has a known noise."""
 
     means: tuple[float, ...] = (0.0, 0.0)
     widths: tuple[float, ...] = (0.5, 0.5)
@@ -39,6 +39,14 @@ class Known:
 
     def wider(self, *factors):
         return replace(self, widths=tuple(f * s for f, s in zip(factors, self.widths, strict=True)))
+
+    def reaching(self, reach, *names):
+        """With 90 % intervals whose ends are moved out by a factor."""
+        ratios = [
+            1 + np.log(reach) / (norm.ppf(0.95) * width) if name in names and width else 1.0
+            for name, width in zip(NAMES, self.widths, strict=True)
+        ]
+        return self.wider(*ratios)
 
     @property
     def design(self):
@@ -51,15 +59,18 @@ class Known:
         return multivariate_normal(np.zeros(TIME.size), covariance).logpdf(away) - np.log(FRICTION).sum()
 
     def moments(self, prior_power=1.0, likelihood_power=1.0):
-        """Mean and covariance of ln a and ln b, with prior and likelihood raised to powers."""
-        precision = prior_power * np.diag(1 / np.square(self.widths))
-        gain = likelihood_power * self.design.T / self.noise**2
-        covariance = np.linalg.inv(precision + gain @ self.design)
-        return covariance @ (precision @ self.means + gain @ np.log(FRICTION)), covariance
+        """Mean and covariance of those of ln a and ln b that are free, with prior and likelihood raised to powers."""
+        free = np.flatnonzero(self.widths)
+        design, means = self.design[:, free], np.array(self.means)
+        data = np.log(FRICTION) - self.design @ np.where(self.widths, 0.0, means)
+        precision = prior_power * np.diag(1 / np.square(self.widths)[free])
+        gain = likelihood_power * design.T / self.noise**2
+        covariance = np.linalg.inv(precision + gain @ design)
+        return covariance @ (precision @ means[free] + gain @ data), covariance
 
     def problem(self) -> Problem:
         parameters = {
-            name: {"lognormal": [float(np.exp(mean)), width]}
+            name: {"lognormal": [float(np.exp(mean)), width]} if width else float(np.exp(mean))
             for name, mean, width in zip(NAMES, self.means, self.widths, strict=True)
         }
         return build_problem(
