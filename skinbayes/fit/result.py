@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from skinbayes.fit.prior_sensitivity import PriorSensitivity
     from skinbayes.problem import Problem
 
 
@@ -210,42 +209,6 @@ class FitResult:
                 "prior_q95": prior95,
             }
         return pandas.DataFrame.from_dict(rows, orient="index")
-
-    def prior_sensitivity(
-        self, refit: bool = False, progress: Callable[[int, int], None] | None = None
-    ) -> PriorSensitivity:
-        """What evidence and posterior owe to the priors.
-
-        The draws are given other weights, as draws of the posterior with each prior half and twice as wide, and with all of them
-        (see ``skinbayes.statistics.widening`` for what that means), Pareto-smoothed; nothing is evaluated anew. And prior
-        and likelihood are raised to powers near 1, Kallioinen et al. 2024, doi 10.1007/s11222-023-10366-5.
-
-        Parameters
-        ----------
-        refit : sample the model anew with the other priors where weights cannot tell (Pareto k too large, or the draws end
-            where a wider prior would go on): about as long as a fit for each
-        progress : called with the number of changed priors done and their total
-
-        Returns
-        -------
-        PriorSensitivity
-            Changes of ln evidence with standard errors, shifts of medians, ratios of widths, sensitivities to the powers, and
-            ``sentences()``.
-
-        Raises
-        ------
-        InputError
-            Model or data of the fit are not at hand any more.
-
-        Examples
-        --------
-        >>> found = fit.prior_sensitivity()
-        >>> found.of(["noise_scale"], 2.0).factor, len(found.informed)
-        (2.0, 5)
-        """
-        from skinbayes.fit.prior_sensitivity import prior_sensitivity
-
-        return prior_sensitivity(self, refit, progress)
 
     def unit(self, label: str) -> str:
         """SI unit of a parameter or derived quantity.
