@@ -22,8 +22,14 @@ if TYPE_CHECKING:
 REACH = (2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """How many times further priors are made to reach, see :func:`skinbayes.statistics.widening.factor_of_reach`."""
 
-SAMPLED = (100.0, 10.0)
-"""Where a model is sampled anew: from there on its draws tell about what lies between."""
+NARROWED = (0.5, 0.3, 0.2, 0.1)
+"""Parts of their width to which priors are narrowed."""
+
+SAMPLED = (100.0, 10.0, 3.0)
+"""Where a model is sampled anew, the first that succeeds: from there on its draws tell about what lies between."""
+
+FADES = 0.5
+"""A preference that narrower priors leave less of than this is said to fade."""
 
 ALL = "all priors"
 
@@ -43,6 +49,8 @@ class WidthScan:
     narrower, wider : the same with priors half and twice as wide; None if that is not known
     turns_at : how many times further the priors reach where the preference turns, in the sense of ``kind``; None if it does not
         as far as is known
+    turns_at_width : part of their width to which priors are narrowed where it turns; None if it does not down to a tenth
+    weakest : smallest ln of the ratio with narrower priors, and the part of their width at which that is
     known_to : largest factor up to which the draws tell
     held : what cannot be made as wide, in words
     """
@@ -56,6 +64,8 @@ class WidthScan:
     narrower: float | None
     wider: float | None
     turns_at: float | None
+    turns_at_width: float | None
+    weakest: tuple[float, float]
     known_to: float
     held: tuple[str, ...]
 
@@ -67,6 +77,11 @@ class WidthScan:
         if self.kind == "wider":
             return f"the prior of {self.quantity} is {times} as wide"
         return f"{self.quantity} may be {times} {self.kind}"
+
+    def narrowed(self, part: float) -> str:
+        """Narrower priors in words."""
+        which = "all priors are" if self.quantity == ALL else f"the prior of {self.quantity} is"
+        return f"{which} {number(part, 2)} times as wide"
 
 
 @dataclass(frozen=True)
@@ -109,25 +124,45 @@ class PriorWidths:
         if scans[0].log_bayes_factor < 2 * scans[0].error:
             return []
         start, said = f"The preference of the evidence for '{preferred}' over '{other}'", []
-        if turning := [scan.may(scan.turns_at) for scan in scans if scan.turns_at]:
+        turning = [scan.may(scan.turns_at) for scan in scans if scan.turns_at]
+        turning += [scan.narrowed(scan.turns_at_width) for scan in scans if scan.turns_at_width]
+        if turning:
             said.append(f"{start} turns if {', or if '.join(turning)}.")
-        narrow = [scan.quantity for scan in scans if scan.narrower is not None and scan.narrower <= 0]
-        if narrow:
-            said.append(f"{start} turns if priors are half as wide: {and_list(narrow)}.")
-        lasting = [scan.may(REACH[-1]) for scan in scans if not scan.turns_at and scan.known_to >= REACH[-1]]
-        if lasting:
-            said.append(f"{start} stays if {', if '.join(lasting)}.")
+        staying = [scan for scan in scans if not scan.turns_at and scan.known_to > 1]
+        if staying:
+            said.append(f"{'It' if turning else start} stays if {_one_of(staying)}.")
+        for scan in scans:
+            value, part = scan.weakest
+            if not scan.turns_at_width and value < FADES * scan.log_bayes_factor:
+                said.append(f"ln of their Bayes factor fades to {value:.2f} if {scan.narrowed(part)}.")
         short = [scan for scan in scans if not scan.turns_at and scan.known_to < REACH[-1]]
-        if some := [scan.may(scan.known_to) for scan in short if scan.known_to > 1]:
-            said.append(f"{start} stays if {', if '.join(some)}, and further out the draws do not tell.")
         if nothing := [scan.quantity for scan in short if scan.known_to == 1]:
             said.append(
-                f"What it would be with much wider priors of {and_list(nothing)} these draws cannot tell (--sensitivity samples "
-                "anew)."
+                f"Whether it stays with much wider priors of {and_list(nothing)} these draws cannot tell (--sensitivity "
+                "samples anew)."
             )
         if held := dict.fromkeys(text for scan in scans for text in scan.held):
             said.append(f"What was not made as wide, because it cannot be: {and_list(list(held))}.")
         return said
+
+
+def _one_of(scans: Sequence[WidthScan]) -> str:
+    """How far the priors of each of several quantities can be widened, those alike together."""
+    alike: dict[tuple[Kind, float, bool], list[WidthScan]] = {}
+    for scan in scans:
+        alike.setdefault((scan.kind, scan.known_to, scan.quantity == ALL), []).append(scan)
+    parts = []
+    for (kind, reach, _), some in alike.items():
+        if len(some) == 1:
+            parts.append(some[0].may(reach))
+            continue
+        names, times = and_list([scan.quantity for scan in some]), f"{number(reach, 2)} times"
+        parts.append(
+            f"one of the priors of {names} is {times} as wide"
+            if kind == "wider"
+            else f"one of {names} may be {times} {kind}"
+        )
+    return ", or if ".join(parts)
 
 
 def prior_widths(
@@ -190,32 +225,50 @@ def _scan(
     def reaching(reach: float, refit: bool = False) -> float | None:
         return with_factors([o.factors(some, reach) for o, some in zip(pair, labels, strict=True)], refit)
 
-    narrower, wider = (with_factors([dict.fromkeys(some, f) for some in labels], True) for f in (0.5, 2.0))
+    def as_wide(factor: float, refit: bool = False) -> float | None:
+        return with_factors([dict.fromkeys(some, factor) for some in labels], refit)
+
+    wider = as_wide(2.0, refit=True)
     any(reaching(reach, refit=True) is not None for reach in SAMPLED)
-    values = {1.0: gap}
-    for reach in REACH:
-        if (value := reaching(reach)) is None:
-            break
-        values[reach] = value
-    turns = next((ends for ends in pairwise(values) if values[ends[0]] > 0 >= values[ends[1]]), None)
-    turns_at = None if turns is None else _root(reaching, *turns, values)
-    priors = [o.prior(label) for o, some in zip(pair, labels, strict=True) for label in some]
+    further, closer = _along(reaching, gap, REACH), _along(as_wide, gap, NARROWED)
+    priors = [other.prior(label) for other, some in zip(pair, labels, strict=True) for label in some]
     return WidthScan(
-        quantity, _kind(priors), names[0], names[1], gap, error, narrower, wider, turns_at, max(values), tuple(held)
+        quantity, _kind(priors), names[0], names[1], gap, error, closer.get(0.5), wider, _turn(reaching, further),
+        _turn(as_wide, closer), min((value, part) for part, value in closer.items()), max(further), tuple(held),
     )  # fmt: skip
 
 
+def _along(
+    value_at: Callable[[float], float | None], gap: float, factors: Sequence[float]
+) -> dict[float, float]:
+    """ln of the Bayes factor at 1 and at the factors up to the first at which it is not known."""
+    values = {1.0: gap}
+    for factor in factors:
+        if (value := value_at(factor)) is None:
+            break
+        values[factor] = value
+    return values
+
+
+def _turn(value_at: Callable[[float], float | None], values: dict[float, float]) -> float | None:
+    """The factor closest to 1 at which the preference turns."""
+    for low, high in pairwise(values):
+        if values[low] > 0 >= values[high]:
+            return _root(value_at, low, high, values)
+    return None
+
+
 def _root(
-    reaching: Callable[[float], float | None], low: float, high: float, values: dict[float, float]
+    value_at: Callable[[float], float | None], low: float, high: float, values: dict[float, float]
 ) -> float:
     """Where the preference turns, between two factors, in the logarithm of which it is nearly straight."""
 
     def at(logarithm: float) -> float:
         part = (logarithm - log(low)) / (log(high) - log(low))
-        found = reaching(exp(logarithm)) if 0.0 < part < 1.0 else None
+        found = value_at(exp(logarithm)) if 0.0 < part < 1.0 else None
         return values[low] + part * (values[high] - values[low]) if found is None else found
 
-    return exp(brentq(at, log(low), log(high), xtol=0.01))
+    return exp(brentq(at, *sorted((log(low), log(high))), xtol=0.01))
 
 
 def _kind(priors: Sequence[Prior]) -> Kind:

@@ -78,3 +78,11 @@ def test_evidence_and_predictive_density_may_disagree(fits):
     said = " ".join(found.sentences())
     assert f"'{worse.name}' made the data exp(5.00 ± 0.14) times as probable" in said
     assert f"predicted best by '{better.name}' instead" in said
+
+
+def test_the_density_kept_is_that_of_the_draws_kept(fits):
+    fit = fits["two"]
+    theta = fit.theta()
+    target = fit.problem.target()
+    expected = target.log_density(target.transform.forward(theta))
+    np.testing.assert_allclose(fit.groups["sample_stats"]["lp"].values.ravel(), expected, atol=1e-9)
