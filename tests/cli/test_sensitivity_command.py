@@ -24,7 +24,9 @@ def test_text_has_a_row_for_each_prior_and_says_what_it_means(saved, capsys):
     assert done.status == 0 and done.errors == ""
     for name in (*load_problem("finger-water").names, "all together"):
         assert f"\n {name} " in done.output
-    assert "a power near 1" in " ".join(done.output.split()) and "ln of the evidence changes by" in done.output
+    assert (
+        "a power near 1" in " ".join(done.output.split()) and "ln of the evidence changes by" in done.output
+    )
 
 
 def test_json_has_every_change_of_every_parameter(saved, capsys):

@@ -13,6 +13,8 @@ from skinbayes.comparison import compare
 from skinbayes.comparison.models import compare_scores
 from skinbayes.comparison.scores import score
 from skinbayes.fit import sample
+from skinbayes.problem.other_priors import priors_of, with_priors
+from skinbayes.statistics.widening import widened
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +88,16 @@ def test_the_density_kept_is_that_of_the_draws_kept(fits):
     target = fit.problem.target()
     expected = target.log_density(target.transform.forward(theta))
     np.testing.assert_allclose(fit.groups["sample_stats"]["lp"].values.ravel(), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_evidence_under_other_priors_is_the_mean_likelihood_under_them(problems, fits, factor):
+    def log_mean(problem, nodes=300):
+        line = (np.arange(nodes) + 0.5) / nodes
+        cube = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+        return logsumexp(problem.log_likelihood(problem.prior_transform(cube))) - 2 * np.log(nodes)
+
+    other = with_priors(problems["two"], [widened(prior, factor) for prior in priors_of(problems["two"])])
+    found = fits["two"].prior_sensitivity().of(problems["two"].names, factor)
+    expected = log_mean(other) - log_mean(problems["two"])
+    assert found.reliable and abs(found.log_evidence_change - expected) < 4 * found.error + 0.005
