@@ -35,23 +35,6 @@ def to_arviz(groups: Mapping[str, xarray.Dataset]) -> Any:
     return xarray.DataTree.from_dict(dict(groups))
 
 
-def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
-    """``ess_bulk``, ``ess_tail`` and, of several chains, ``r_hat``, each ``(D,)``, from samples ``(chains, draws, D)``."""
-    import xarray
-
-    az = arviz()
-    chains = xarray.Dataset({"x": (("chain", "draw", "part"), samples)})
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # too few draws are said in words
-        found = {
-            "ess_bulk": az.ess(chains, method="bulk"),
-            "ess_tail": az.ess(chains, method="tail"),
-        }
-        if len(samples) > 1:
-            found["r_hat"] = az.rhat(chains)
-    return {name: np.asarray(values["x"].values, dtype=float) for name, values in found.items()}
-
-
 def power_scaling(
     draws: FloatArray, log_prior: FloatArray, log_likelihood: FloatArray
 ) -> dict[str, FloatArray]:
@@ -91,6 +74,23 @@ def power_scaling(
                 values = az.psense(data, group=name, alphas=(1 / (1 + POWER), 1 + POWER))
         found[name] = np.asarray(values["x"].values, dtype=float)
     return found
+
+
+def effective_sizes_and_r_hat(samples: FloatArray) -> dict[str, FloatArray]:
+    """``ess_bulk``, ``ess_tail`` and, of several chains, ``r_hat``, each ``(D,)``, from samples ``(chains, draws, D)``."""
+    import xarray
+
+    az = arviz()
+    chains = xarray.Dataset({"x": (("chain", "draw", "part"), samples)})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # too few draws are said in words
+        found = {
+            "ess_bulk": az.ess(chains, method="bulk"),
+            "ess_tail": az.ess(chains, method="tail"),
+        }
+        if len(samples) > 1:
+            found["r_hat"] = az.rhat(chains)
+    return {name: np.asarray(values["x"].values, dtype=float) for name, values in found.items()}
 
 
 def standard_error(pointwise: FloatArray) -> float:
