@@ -12,8 +12,8 @@ from skinbayes.errors import InputError
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
-RUNS = 1
-"""Runs of nested sampling: one knows ln Z to about a tenth, more cost minutes each."""
+OPTIONS: dict[str, Any] = {"max_runs": 1}
+"""Of nested sampling: one run knows ln Z to about a tenth, each further one may cost minutes."""
 
 AGREEMENT = 3.0
 """The two agree if they differ by at most so many combined standard errors."""
@@ -80,6 +80,6 @@ def cross_check(fit: Fit, progress: CrossCheckProgress | None = None) -> CrossCh
         raise InputError(f"'{fit.name}' cannot be checked: its model or its data are not at hand")
     told = None if progress is None else (lambda state: progress(fit.name, state))
     run = fit.provenance["sampling"]
-    found = sample(fit.problem, int(run["seed"]), engine="nested", max_runs=RUNS, progress=told)
+    found = sample(fit.problem, int(run["seed"]), engine="nested", progress=told, **OPTIONS)
     own = run.get("log_evidence") or (None, None)
     return CrossCheck(fit.name, *own, *found.provenance["sampling"]["log_evidence"])

@@ -199,7 +199,8 @@ def difference(first: FloatArray, second: FloatArray) -> Difference:
     gaps = first - second
     value, error = float(gaps.sum()), _standard_error(gaps)
     # with few parts the error itself is known badly
-    clear = abs(value) >= max(SMALL, float(stdtrit(len(gaps) - 1, 0.975)) * error)
+    often = float(stdtrit(len(gaps) - 1, 0.975)) if len(gaps) > 1 else float("inf")
+    clear = abs(value) >= SMALL and abs(value) >= often * error
     return Difference(value, _unless_few(error, len(gaps)), (1 if value > 0 else -1) if clear else 0)
 
 

@@ -31,7 +31,7 @@ scale = 0.05
 def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Five people, one of whom is unlike the others, in two models with other priors."""
     folder = tmp_path_factory.mktemp("people")
-    values = 0.4 * np.exp(0.1 * np.random.default_rng(2).normal(size=(5, 3)))
+    values = 0.4 * np.exp(0.1 * np.random.default_rng(2).normal(size=(5, 5)))
     values[3] *= 3.0
     lines = [f"p{i},{value:.6f}" for i, row in enumerate(values) for value in row]
     (folder / "people.csv").write_text(

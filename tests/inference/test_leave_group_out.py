@@ -238,14 +238,46 @@ def test_a_parameter_of_the_level_left_out_keeps_its_prior(tmp_path: Path) -> No
     assert first == second
 
 
-def test_one_of_several_observables_left_out() -> None:
-    problem = load_problem("drying-timing")
-    theta = problem.draw_prior(np.random.default_rng(3), 3)
+AREAS = """
+title = "Contact area at two magnifications"
+forward = "contact-area"
+[data]
+file = "areas.csv"
+observables = ["relative_contact_area", "plastic_fraction"]
+[surface]
+name = "paper_reference"
+[parameters]
+young_modulus_layer = { lognormal = ["1 GPa", 0.5] }
+young_modulus_bulk = "20 kPa"
+layer_thickness = "20 um"
+yield_stress = "50 MPa"
+nominal_pressure = "6.83 kPa"
+[noise.relative_contact_area]
+family = "lognormal"
+noise_scale = 0.1
+[noise.plastic_fraction]
+family = "gaussian"
+noise_scale = 0.1
+"""
+
+
+def test_one_datum_of_several_observables_left_out(tmp_path: Path) -> None:
+    (tmp_path / "model.toml").write_text(AREAS, encoding="utf-8")
+    (tmp_path / "areas.csv").write_text(
+        "wavevector [1/m],relative_contact_area [1],plastic_fraction [1]\n1e5,1e-3,0.2\n1e6,1e-4,0.9\n",
+        encoding="utf-8",
+    )
+    problem = load_problem(tmp_path / "model.toml")
+    theta = problem.draw_prior(np.random.default_rng(3), 5)
     pointwise = problem.log_likelihood(theta, pointwise=True)
-    without = without_data(problem, np.array([False, True]))
-    assert_allclose(without.log_likelihood(theta), pointwise[:, 1], rtol=1e-12)
-    nothing = without_data(problem, np.array([False, False]))
+    keep = np.array([True, True, False, True])
+    assert_allclose(without_data(problem, keep).log_likelihood(theta), pointwise[:, keep].sum(1), rtol=1e-12)
+    nothing = without_data(problem, np.zeros(4, dtype=bool))
     assert_allclose(nothing.log_posterior(theta), problem.log_prior(theta), rtol=1e-12)
+    # also in the coordinates in which it is sampled
+    z = problem.target().transform.forward(theta)
+    gap = problem.target().log_density(z) - without_data(problem, keep).target().log_density(z)
+    assert_allclose(gap, pointwise[:, 2], rtol=1e-9, atol=1e-9)
 
 
 # -- several observables, words, JSON --------------------------------------------------------------------------------
