@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("runs", nargs=-1, required=True, metavar="RUN RUN ...")
 @click.option(
-    "--refit/--no-refit",
-    default=True,
-    help="Sample anew without what importance sampling cannot leave out, and without each datum if there are few.",
+    "--no-refit",
+    is_flag=True,
+    help="Do not sample anew without what importance sampling cannot leave out, and without each datum if there are few.",
 )
 @click.option(
     "--leave-out",
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 )
 @json_option
 def compare(
-    runs: tuple[str, ...], refit: bool, leave_out: tuple[str, ...], nested: bool, as_json: bool
+    runs: tuple[str, ...], no_refit: bool, leave_out: tuple[str, ...], nested: bool, as_json: bool
 ) -> None:
     """Compare models by what they predict for data left out.
 
@@ -56,7 +56,7 @@ def compare(
     with named_progress("nested sampling of") as told:
         checks = tuple(cross_check(fit, told) for fit in fits if nested)
     with counted_progress("refits") as progress:
-        result = replace(compare_fits(fits, refit, leave_out, progress=progress), cross_checks=checks)
+        result = replace(compare_fits(fits, not no_refit, leave_out, progress=progress), cross_checks=checks)
     if as_json:
         print_json(result.to_dict())
         return

@@ -62,10 +62,11 @@ def left_out_density(
     weights = weights - logsumexp(weights)
     value = float(logsumexp(weights + log_density))
     # the error of a ratio of means; draws of equal weight that depend on each other count for less
-    deviation = np.exp(weights) * np.expm1(log_density - value)
     times = max(1.0, log_density.size / effective) if log_weights is None else 1.0
-    error = float(np.sqrt(np.square(deviation).sum() * times))
-    return LeftOutDensity(value, error, shape)
+    with np.errstate(over="ignore", invalid="ignore"):
+        deviation = np.exp(weights) * np.expm1(log_density - value)
+        error = float(np.sqrt(np.square(deviation).sum() * times))
+    return LeftOutDensity(value, error if np.isfinite(error) else float("inf"), shape)
 
 
 def pareto_shape(ratios: FloatArray) -> float:
