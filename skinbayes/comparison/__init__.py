@@ -1,6 +1,7 @@
 """Comparing models on the same data, by what they predict for data left out, and against baseline models without theory."""
 
 from skinbayes.comparison.baselines import against_baselines
+from skinbayes.comparison.cross_check import CrossCheck, cross_check
 from skinbayes.comparison.models import ComparedModel, Comparison, compare
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
 from skinbayes.comparison.prior_widths import PriorWidths, WidthScan
@@ -13,6 +14,7 @@ __all__ = [
     "AgainstBaselines",
     "ComparedModel",
     "Comparison",
+    "CrossCheck",
     "LeftOut",
     "LeftOutLevel",
     "NoiseFloor",
@@ -21,6 +23,7 @@ __all__ = [
     "WidthScan",
     "against_baselines",
     "compare",
+    "cross_check",
     "noise_floor",
     "stacking_weights",
 ]

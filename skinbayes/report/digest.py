@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.plot.predictive import row_names
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.groups import group_findings
+from skinbayes.report.repeats import repeats
 from skinbayes.report.ridges import posterior_ridges
 from skinbayes.report.sensitivity import brief_sensitivity
 from skinbayes.report.trends import residual_trends
@@ -32,7 +33,8 @@ def digest(fit: Fit) -> dict[str, Any]:
         means, and the fraction of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of
         each effect, the scale over the noise, the fraction of the variance), ``ridges`` (pairs of parameters, exponent, the
         combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
-        checks of its residuals along columns that simulated data hardly ever meet, the most surprising first). Quantities in SI.
+        checks of its residuals along columns that simulated data hardly ever meet, the most surprising first), ``repeats``
+        (observable to the scatter of rows of the same conditions and the misfit beside it). Quantities in SI.
     """
     names = row_names(fit)
     return {
@@ -52,4 +54,5 @@ def digest(fit: Fit) -> dict[str, Any]:
             name: [asdict(check) for check in checks if check.found]
             for name, checks in residual_trends(fit).items()
         },
+        "repeats": {name: asdict(one) | {"found": one.found} for name, one in repeats(fit).items()},
     }
