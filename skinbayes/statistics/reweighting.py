@@ -3,30 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, log10
+from math import inf
 
 import numpy as np
 from scipy.special import logsumexp
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.statistics.annealing import effective_number
-from skinbayes.statistics.pareto import smoothed
+from skinbayes.statistics.pareto import largest_shape, smoothed
 
 SMOOTHED_FROM = 1 / 3
 """Pareto k from which weights are smoothed; below it their moments of order three exist, and their plain mean is as good."""
-
-
-def largest_shape(count: float) -> float:
-    """Largest Pareto k at which a mean of ``count`` weights can be trusted: ``min(1 − 1/log10(count), 0.7)``.
-
-    Vehtari et al. 2024, Journal of Machine Learning Research 25, 72.
-
-    Examples
-    --------
-    >>> round(largest_shape(100), 2), largest_shape(1e4)
-    (0.5, 0.7)
-    """
-    return min(1.0 - 1.0 / log10(count), 0.7) if count > 10.0 else -inf
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import pytest
 from skinbayes.errors import InputError
 from skinbayes.statistics.families import FAMILIES
 from skinbayes.statistics.priors import make_prior
-from skinbayes.statistics.reweighting import largest_shape, reweighted
+from skinbayes.statistics.reweighting import reweighted
 from skinbayes.statistics.widening import factor_of_reach, widened, width_ratio
 
 EXAMPLES = {
@@ -98,4 +98,3 @@ def test_weights_of_a_wider_normal_distribution_are_refused_for_their_tails():
     narrower = [reweighted(np.zeros(4000), -1.5 * x**2) for x in draws]
     errors = [(entry.log_ratio + np.log(2.0)) / entry.error for entry in narrower]
     assert all(entry.reliable for entry in narrower) and 0.7 < np.std(errors) < 1.3
-    assert largest_shape(4000) == 0.7 and largest_shape(5) < 0
