@@ -164,7 +164,8 @@ def score(
     """
     single = single_data(fit)
     everything = [single, *levels(fit)]
-    everything += [blocks(fit, wanted) for wanted in dict.fromkeys(leave_out)]
+    known = {parts.name for parts in everything}
+    everything += [blocks(fit, wanted) for wanted in dict.fromkeys(leave_out) if wanted not in known]
     effective = _effective(fit)
     found = [_by_weights(parts, effective) for parts in everything]
     if refit and fit.problem is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from skinbayes.comparison.parts import ORDER
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut
 from skinbayes.phrases import plural, singular
 
@@ -27,12 +28,17 @@ def is_of_blocks(column: str) -> bool:
 
 def one(column: str) -> str:
     """What is left out at a time: ``"person"``, ``"block along normal_force"``."""
-    return f"block along {column.rpartition(' in ')[0]}" if is_of_blocks(column) else singular(column)
+    return _block(column, "block") if is_of_blocks(column) else singular(column)
 
 
 def many(column: str) -> str:
     """Several of them: ``"people"``, ``"blocks along normal_force"``."""
-    return f"blocks along {column.rpartition(' in ')[0]}" if is_of_blocks(column) else plural(column)
+    return _block(column, "blocks") if is_of_blocks(column) else plural(column)
+
+
+def _block(column: str, word: str) -> str:
+    along = column.rpartition(" in ")[0]
+    return f"{word} of rows" if along == ORDER else f"{word} along {along}"
 
 
 def level_question(column: str, grouped_by: Sequence[str]) -> str:

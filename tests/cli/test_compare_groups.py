@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from command_line import run
 
+import skinbayes.comparison
+from skinbayes.comparison import CrossCheck
 from skinbayes.fit import sample
 from skinbayes.problem import load_problem
 
@@ -72,3 +74,24 @@ def test_refits(runs: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
             previous = old["left_out"]["person"]["levels"][level]
             assert entry["refitted"] == (not previous["reliable"])
             assert (entry["elpd"] == previous["elpd"]) == previous["reliable"]
+
+
+def test_blocks_and_the_cross_check(
+    runs: list[Path], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        skinbayes.comparison, "cross_check", lambda fit, told: CrossCheck(fit.name, None, None, -1.5, 0.1)
+    )
+    asked = ("compare", *runs, "--no-refit", "--leave-out", "order in 5", "--leave-out", "person")
+    document = run(capsys, *asked, "--json").document()
+    entry = document["models"][0]["left_out"]
+    # rows stand person by person, so that blocks of five are people: in closed form, and by the rule of products
+    blocks, people = (entry[name]["levels"].values() for name in ("order in 5", "person"))
+    for block, person in zip(blocks, people, strict=True):
+        assert block["elpd"] == pytest.approx(person["elpd"], abs=1e-6) or not person["reliable"]
+    outcome = run(capsys, *asked, "--cross-check")
+    assert outcome.status == 0
+    text = " ".join(outcome.output.split())
+    assert "one block of rows left out at a time" in text
+    assert "nested sampling gives ln Z" in text and "no evidence of its own" in text
+    assert run(capsys, "compare", *runs, "--leave-out", "force in 3").status == 2
