@@ -23,6 +23,7 @@ from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE,
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
+from skinbayes.cli.sensitivity import sensitivity
 from skinbayes.cli.template import template
 from skinbayes.errors import NO_SPACE, InputError, MachineError, RepairWarning
 from skinbayes.version import __version__
@@ -64,6 +65,7 @@ for _command in (
     prior,
     predict,
     fit,
+    sensitivity,
     compare,
     report,
 ):

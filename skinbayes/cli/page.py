@@ -52,14 +52,14 @@ def write_page(
     InputError
         Something else stands under the name of the page.
     """
-    from skinbayes.cli.progress import baseline_progress
+    from skinbayes.cli.progress import named_progress
     from skinbayes.comparison import against_baselines
     from skinbayes.report import write_report
 
     refuse_other_files(page)
     baseline_models = None
     if with_baselines and fit.problem is not None and fit.problem.spec.baseline_models:
-        with baseline_progress() as progress:
+        with named_progress("baseline model") as progress:
             baseline_models = against_baselines(fit, run, progress)
     write_report(fit, page, baseline_models)
     return baseline_models

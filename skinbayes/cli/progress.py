@@ -88,8 +88,8 @@ def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[RunPr
 
 
 @contextmanager
-def baseline_progress() -> Iterator[Callable[[str, RunProgress], None]]:
-    """Yield what to call with the name of a baseline model after every block of its steps."""
+def named_progress(what: str) -> Iterator[Callable[[str, RunProgress], None]]:
+    """Yield what to call with the name of a model after every block of its steps."""
     with ExitStack() as shown:
         current: dict[str, Callable[[RunProgress], None]] = {}
 
@@ -97,7 +97,7 @@ def baseline_progress() -> Iterator[Callable[[str, RunProgress], None]]:
             if name not in current:
                 # the bar of the baseline model before makes way
                 shown.close()
-                current[name] = shown.enter_context(sampling_progress(f"baseline model {name}"))
+                current[name] = shown.enter_context(sampling_progress(f"{what} {name}"))
             current[name](progress)
 
         yield update

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import softmax
 
+from skinbayes.comparison.cross_check import CrossCheck, cross_check
+from skinbayes.comparison.prior_widths import PriorWidths, prior_widths
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut, RefitProgress, Scores, difference, score
 from skinbayes.comparison.verdicts import (
     few_levels,
     level_question,
+    plus_minus,
     pointwise_question,
-    sign_of,
+    unreliable_data,
     unreliable_levels,
 )
 from skinbayes.comparison.weights import stacking_weights
@@ -31,30 +34,37 @@ class ComparedModel:
     Attributes
     ----------
     name : the model
-    elpd_loo, elpd_loo_se : expected log predictive density of left-out data and its standard error
+    elpd_loo, elpd_loo_se : expected log predictive density of left-out data and its standard error, None with fewer than
+        `FEW_ROWS` data
     p_loo : effective number of parameters
     elpd_difference, elpd_difference_se : difference to the best model and its standard error
-    weight : stacking weight
-    unreliable_rows : data whose Pareto k says that leaving them out cannot be estimated from these draws
+    weight : stacking weight; None where a term of any model is unreliable
+    unreliable_rows : data of which it is not known how well they are predicted when they are left out
     converged : whether the fit met its stopping rule
-    left_out : the same for all data of one level of a grouping column at a time, by column
+    left_out : the same for all data of one level of a grouping column, or of a block of rows, at a time, by column
     log_evidence, log_evidence_se : ln Z and its standard error; None if not known of all models
     probability : of the model given the data, if all models were equally probable before; None without evidence
+    refitted_rows : data that were left out by sampling anew
+    monte_carlo_error : standard error of ``elpd_loo`` as a number that was computed from draws
+    told_apart : whether it is clearly worse than the best model
     """
 
     name: str
     elpd_loo: float
-    elpd_loo_se: float
+    elpd_loo_se: float | None
     p_loo: float
     elpd_difference: float
-    elpd_difference_se: float
-    weight: float
+    elpd_difference_se: float | None
+    weight: float | None
     unreliable_rows: int
     converged: bool
     left_out: Mapping[str, LeftOut] = field(default_factory=dict)
     log_evidence: float | None = None
     log_evidence_se: float | None = None
     probability: float | None = None
+    refitted_rows: int = 0
+    monte_carlo_error: float = 0.0
+    told_apart: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
@@ -70,50 +80,56 @@ class Comparison:
     models : best first
     rows : number of data
     grouped_by : grouping columns that have effects in one of the models
+    prior_widths : what the evidence owes to the width of priors
+    cross_checks : ln Z by nested sampling beside that of the fits, if it was asked for
     """
 
     models: tuple[ComparedModel, ...]
     rows: int
     grouped_by: tuple[str, ...] = ()
+    prior_widths: PriorWidths = field(default_factory=PriorWidths)
+    cross_checks: tuple[CrossCheck, ...] = ()
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Grouping columns whose levels were left out."""
+        """Grouping columns whose levels were left out, and blocks of rows."""
         return tuple(self.models[0].left_out)
 
     def sentences(self) -> list[str]:
         """What the comparison says, in words."""
         best, said = self.models[0], []
         for other in self.models[1:]:
-            gap, error = -other.elpd_difference, other.elpd_difference_se
-            if not sign_of(gap, error):
-                said.append(
-                    f"These data do not tell '{best.name}' and '{other.name}' apart: their predictive densities differ by "
-                    f"{gap:.2f} ± {error:.2f}."
-                )
+            gap = plus_minus(-other.elpd_difference, other.elpd_difference_se)
+            computed = np.hypot(best.monte_carlo_error, other.monte_carlo_error)
+            if other.elpd_difference_se is None and other.weight is not None and computed > 0:
+                gap += f" (computed to ± {computed:.2f})"
+            if other.told_apart:
+                said.append(f"'{best.name}' predicts left-out data better than '{other.name}', by {gap}.")
             else:
                 said.append(
-                    f"'{best.name}' predicts left-out data better than '{other.name}', by {gap:.1f} ± {error:.1f}."
+                    f"These data do not tell '{best.name}' and '{other.name}' apart: their predictive densities differ by {gap}."
                 )
-        said += self._on_evidence()
+        said += [*self._on_evidence(), *self.prior_widths.sentences()]
+        said += [check.sentence() for check in self.cross_checks]
         if self.grouped_by:
             said.append(pointwise_question(self.grouped_by))
         if self.rows < FEW_ROWS:
             said.append(
-                f"With {self.rows} data leave-one-out can hardly decide anything; standard errors are not to be trusted."
+                f"With {self.rows} data leave-one-out can hardly decide anything; a standard error over them would mean nothing "
+                "and is not given."
             )
         for column in self.columns:
             said += self._on_levels(column)
         for model in self.models:
-            if model.unreliable_rows:
-                said.append(
-                    f"'{model.name}': {model.unreliable_rows} of {self.rows} data influence the posterior so strongly that "
-                    "leaving them out cannot be estimated by importance sampling (Pareto k above the limit)."
-                )
+            said += unreliable_data(model.name, model.unreliable_rows, model.refitted_rows, self.rows)
             for left_out in model.left_out.values():
                 said += unreliable_levels(model.name, left_out)
             if not model.converged:
                 said.append(f"'{model.name}' has NOT CONVERGED; its numbers are provisional.")
+        if any(model.weight is None for model in self.models):
+            said.append(
+                "There are no stacking weights: they hang on every single datum, and some of these numbers are unreliable."
+            )
         return said
 
     def _on_evidence(self) -> list[str]:
@@ -128,7 +144,7 @@ class Comparison:
             f"'{second.name}'. This hangs on the priors: a parameter that the data leave alone costs nothing, a needlessly wide "
             "prior of one that they determine costs evidence."
         )
-        if first.name == self.models[0].name:
+        if first.name == self.models[0].name or first.weight is None:
             return [said]
         return [
             said,
@@ -151,12 +167,13 @@ class Comparison:
         ordered = sorted(self.models, key=lambda model: -model.left_out[column].elpd)
         best = ordered[0]
         for other in ordered[1:]:
-            gap, error = -other.left_out[column].difference, other.left_out[column].difference_se
-            if sign_of(gap, error):
-                said.append(f"'{best.name}' does so better than '{other.name}', by {gap:.1f} ± {error:.1f}.")
+            found = difference(best.left_out[column].pointwise, other.left_out[column].pointwise)
+            gap = plus_minus(found.value, found.error)
+            if found.sign:
+                said.append(f"'{best.name}' does so better than '{other.name}', by {gap}.")
             else:
                 said.append(
-                    f"In that '{best.name}' and '{other.name}' are not told apart: they differ by {gap:.2f} ± {error:.2f}."
+                    f"In that '{best.name}' and '{other.name}' are not told apart: they differ by {gap}."
                 )
         return said + few_levels(best.left_out[column])
 
@@ -165,23 +182,38 @@ class Comparison:
         return {
             "models": [model.to_dict() for model in self.models],
             "rows": self.rows,
+            "prior_widths": self.prior_widths.to_dict(),
+            "cross_checks": [asdict(check) | {"agrees": check.agrees} for check in self.cross_checks],
             "sentences": self.sentences(),
         }
 
 
-def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | None = None) -> Comparison:
+def compare(
+    fits: Sequence[Fit],
+    refit: bool = True,
+    leave_out: Sequence[str] = (),
+    nested: bool = False,
+    progress: RefitProgress | None = None,
+    sensitivity: bool = False,
+) -> Comparison:
     """Compare fits by what they predict for data left out.
 
     Single data by Pareto-smoothed importance-sampling leave-one-out cross-validation, Vehtari, Gelman & Gabry 2017,
-    doi 10.1007/s11222-016-9696-4; weights by stacking, Yao et al. 2018, doi 10.1214/17-BA1091. And, where the data have grouping
-    columns, all data of one person, or one liquid, in the same way: Merkle, Furr & Rabe-Hesketh 2019,
-    doi 10.1007/s11336-019-09679-0, on why these are other questions.
+    doi 10.1007/s11222-016-9696-4, and by refits where there are few data or importance sampling fails; weights by stacking,
+    Yao et al. 2018, doi 10.1214/17-BA1091. And, where the data have grouping columns, all data of one person, or one liquid, in
+    the same way: Merkle, Furr & Rabe-Hesketh 2019, doi 10.1007/s11336-019-09679-0, on why these are other questions.
 
     Parameters
     ----------
     fits : two or more fits of the same data
-    refit : sample a model anew without a level of a grouping column where importance sampling cannot leave it out
+    refit : sample a model anew without each datum if there are at most 20, and without whatever importance sampling cannot
+        leave out, where the model and its data are at hand
+    leave_out : blocks of rows to be left out too: ``"normal_force in 3"``, thirds of the rows along a column, ``"in 3"`` along
+        that which has the most different values, ``"order in 3"`` as they stand, ``"session"`` by value
+    nested : compute ln Z of each model by nested sampling too, an independent check
     progress : called before the first and after every refit of a model, with the number done and their total
+    sensitivity : sample a model anew with wider priors where the draws cannot tell whether the evidence would still prefer the
+        same model
 
     Returns
     -------
@@ -191,15 +223,15 @@ def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | 
     Raises
     ------
     InputError
-        Fewer than two fits, fits of different data (another table, other rows or another observable), or a refit is needed
-        of a fit whose model or data are not at hand.
+        Fewer than two fits, fits of different data (another table, other rows or another observable), blocks that cannot be
+        made, or dynesty is not installed. The model or data of a fit are not at hand, where blocks or nested sampling need them.
 
     Examples
     --------
     >>> import skinbayes as sb
     >>> problem = sb.load_problem("finger-water")
     >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 500))
-    >>> compared = sb.compare([fit, fit])
+    >>> compared = sb.compare([fit, fit], refit=False)
     >>> compared.rows, [model.elpd_difference for model in compared.models]
     (11, [0.0, 0.0])
     """
@@ -212,7 +244,10 @@ def compare(fits: Sequence[Fit], refit: bool = False, progress: RefitProgress | 
                 f"'{reference.name}' and '{fit.name}' were fitted to different data "
                 f"({_describe(reference)}; {_describe(fit)}); only models of the same rows can be compared"
             )
-    return compare_scores([score(fit, refit, progress) for fit in fits], grouped_by(fits))
+    checks = tuple(cross_check(fit) for fit in fits) if nested else ()  # may lack dynesty, so before all work
+    scores = [score(fit, refit, leave_out, progress) for fit in fits]
+    widths = prior_widths(fits, sensitivity, progress if sensitivity else None)
+    return replace(compare_scores(scores, grouped_by(fits)), cross_checks=checks, prior_widths=widths)
 
 
 def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> Comparison:
@@ -223,31 +258,35 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
     scores : of one or more fits
     grouped : grouping columns that have effects in one of the models
     """
-    pointwise = np.stack([entry.loo["pointwise"] for entry in scores])
-    weights = stacking_weights(pointwise)
-    best = int(np.argmax([entry.loo["elpd"] for entry in scores]))
+    pointwise = np.stack([entry.single.pointwise for entry in scores])
+    reliable = not any(entry.single.unreliable for entry in scores)
+    weights = stacking_weights(pointwise) if reliable else None
+    best = int(np.argmax([entry.single.elpd for entry in scores]))
     left_out = _differences(scores)
     known = [entry.log_evidence for entry in scores if entry.log_evidence is not None]
     evidence = known if len(known) == len(scores) else None
     probabilities = softmax([value for value, _ in evidence]) if evidence else None
     models = []
     for i, entry in enumerate(scores):
-        gap, error = difference(pointwise[i], pointwise[best])
+        gap = difference(pointwise[i], pointwise[best])
         models.append(
             ComparedModel(
                 name=entry.name,
-                elpd_loo=entry.loo["elpd"],
-                elpd_loo_se=entry.loo["se"],
-                p_loo=entry.loo["p"],
-                elpd_difference=gap,
-                elpd_difference_se=error,
-                weight=float(weights[i]),
-                unreliable_rows=int((entry.loo["pareto_k"] > entry.loo["good_k"]).sum()),
+                elpd_loo=entry.single.elpd,
+                elpd_loo_se=entry.single.elpd_se,
+                p_loo=entry.effective_parameters,
+                elpd_difference=gap.value,
+                elpd_difference_se=gap.error,
+                weight=None if weights is None else float(weights[i]),
+                unreliable_rows=len(entry.single.unreliable),
                 converged=entry.converged,
                 left_out=left_out[i],
                 log_evidence=evidence[i][0] if evidence else None,
                 log_evidence_se=evidence[i][1] if evidence else None,
                 probability=None if probabilities is None else float(probabilities[i]),
+                refitted_rows=len(entry.single.refitted),
+                monte_carlo_error=entry.single.monte_carlo_error,
+                told_apart=gap.sign != 0,
             )
         )
     models.sort(key=lambda model: -model.elpd_loo)
@@ -271,8 +310,8 @@ def _differences(scores: Sequence[Scores]) -> list[dict[str, LeftOut]]:
         entries = [entry.left_out[column] for entry in scores]
         best = max(entries, key=lambda entry: entry.elpd)
         for kept, entry in zip(found, entries, strict=True):
-            gap, error = difference(entry.pointwise, best.pointwise)
-            kept[column] = replace(entry, difference=gap, difference_se=error)
+            gap = difference(entry.pointwise, best.pointwise)
+            kept[column] = replace(entry, difference=gap.value, difference_se=gap.error)
     return found
 
 

@@ -10,21 +10,20 @@ import numpy as np
 
 from skinbayes.comparison.models import Comparison, compare_scores, grouped_by
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
+from skinbayes.comparison.parts import SINGLE
 from skinbayes.comparison.scores import Scores, difference
 from skinbayes.comparison.verdicts import (
     few_levels,
     level_question,
+    plus_minus,
     pointwise_question,
-    sign_of,
+    unreliable_data,
     unreliable_levels,
 )
 from skinbayes.phrases import singular
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
-
-SINGLE = "datum"
-"""Question of leaving out single data; the other questions are grouping columns."""
 
 VERDICTS = {1: "beats", 0: "equals", -1: "loses to"}
 
@@ -40,14 +39,15 @@ class RankedAgainst:
     ----------
     baseline_model : name of the baseline model
     question : ``"datum"``, or the grouping column whose levels are left out
-    difference, difference_se : predictive density of the fit less that of the baseline model, and its standard error
+    difference, difference_se : predictive density of the fit less that of the baseline model, and its standard error, None with
+        few data or levels
     verdict : ``"beats"``, ``"equals"`` or ``"loses to"``
     """
 
     baseline_model: str
     question: str
     difference: float
-    difference_se: float
+    difference_se: float | None
     verdict: str
 
 
@@ -98,6 +98,9 @@ class AgainstBaselines:
             if question != SINGLE:
                 said += few_levels(self.comparison.models[0].left_out[question])
         for model in self.comparison.models:
+            said += unreliable_data(
+                model.name, model.unreliable_rows, model.refitted_rows, self.comparison.rows
+            )
             for left_out in model.left_out.values():
                 said += unreliable_levels(model.name, left_out)
             if not model.converged:
@@ -130,8 +133,8 @@ class AgainstBaselines:
             rows.append(
                 [
                     model.name,
-                    f"{model.elpd_loo:.1f} ± {model.elpd_loo_se:.1f}",
-                    *(f"{entry.elpd:.1f} ± {entry.elpd_se:.1f}" for entry in model.left_out.values()),
+                    plus_minus(model.elpd_loo, model.elpd_loo_se, 1),
+                    *(plus_minus(entry.elpd, entry.elpd_se, 1) for entry in model.left_out.values()),
                     "" if left.noise is None else f"{left.noise:.3g}",
                     *(
                         f"{left.group_scales[column]:.3g}" if column in left.group_scales else ""
@@ -172,16 +175,16 @@ class AgainstBaselines:
 
     def _words(self, ranked: RankedAgainst) -> str:
         what = "a left-out datum" if ranked.question == SINGLE else f"a left-out {singular(ranked.question)}"
-        gap, error = ranked.difference, ranked.difference_se
+        gap = plus_minus(abs(ranked.difference), ranked.difference_se, 1)
         if ranked.verdict == VERDICTS[0]:
             return (
-                f"'{self.name}' equals '{ranked.baseline_model}' in predicting {what}: they differ by {gap:.1f} ± {error:.1f}, "
+                f"'{self.name}' equals '{ranked.baseline_model}' in predicting {what}: they differ by {gap}, "
                 "which is no difference."
             )
         if ranked.verdict == VERDICTS[1]:
-            return f"'{self.name}' beats '{ranked.baseline_model}' in predicting {what}, by {gap:.1f} ± {error:.1f}."
+            return f"'{self.name}' beats '{ranked.baseline_model}' in predicting {what}, by {gap}."
         return (
-            f"'{self.name}' LOSES to '{ranked.baseline_model}' in predicting {what}, by {-gap:.1f} ± {error:.1f}: "
+            f"'{self.name}' LOSES to '{ranked.baseline_model}' in predicting {what}, by {gap}: "
             "its physics makes this prediction worse."
         )
 
@@ -200,16 +203,15 @@ def beside(fit: Fit, scores: Sequence[Scores], fits: Sequence[Fit]) -> AgainstBa
     ranking = []
     for question in (SINGLE, *comparison.columns):
         for other in scores[1:]:
-            gap, error = difference(_scores_of(own, question), _scores_of(other, question))
-            verdict = VERDICTS[sign_of(gap, error)]
-            ranking.append(RankedAgainst(other.name, question, gap, error, verdict))
+            gap = difference(_scores_of(own, question), _scores_of(other, question))
+            ranking.append(RankedAgainst(other.name, question, gap.value, gap.error, VERDICTS[gap.sign]))
     floor = None if fit.problem is None else noise_floor(fit.problem)
     scatter = {entry.name: _scatter(entry) for entry in fits}
     return AgainstBaselines(fit.name, comparison, tuple(ranking), scatter, floor)
 
 
 def _scores_of(scores: Scores, question: str) -> Any:
-    return scores.loo["pointwise"] if question == SINGLE else scores.left_out[question].pointwise
+    return scores.single.pointwise if question == SINGLE else scores.left_out[question].pointwise
 
 
 def _scatter(fit: Fit) -> Scatter:

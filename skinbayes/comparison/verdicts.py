@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
+from skinbayes.comparison.parts import ORDER
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut
 from skinbayes.phrases import plural, singular
-
-SMALL = 4.0
-"""A smaller difference of predictive densities says nothing, whatever its standard error."""
-
-
-def sign_of(difference: float, error: float) -> int:
-    """1 if a difference of predictive densities is clearly positive, −1 if clearly negative, else 0."""
-    clear = abs(difference) >= 2 * error and abs(difference) >= SMALL
-    return (1 if difference > 0 else -1) if clear else 0
 
 
 def pointwise_question(grouped_by: Sequence[str]) -> str:
@@ -28,8 +21,33 @@ def pointwise_question(grouped_by: Sequence[str]) -> str:
     )
 
 
+def is_of_blocks(column: str) -> bool:
+    """Whether it is blocks of rows that are left out, ``"normal_force in 3"``, and not the levels of a column."""
+    return re.search(r" in \d+$", column) is not None
+
+
+def one(column: str) -> str:
+    """What is left out at a time: ``"person"``, ``"block along normal_force"``."""
+    return _block(column, "block") if is_of_blocks(column) else singular(column)
+
+
+def many(column: str) -> str:
+    """Several of them: ``"people"``, ``"blocks along normal_force"``."""
+    return _block(column, "blocks") if is_of_blocks(column) else plural(column)
+
+
+def _block(column: str, word: str) -> str:
+    along = column.rpartition(" in ")[0]
+    return f"{word} of rows" if along == ORDER else f"{word} along {along}"
+
+
 def level_question(column: str, grouped_by: Sequence[str]) -> str:
-    """What leaving out the levels of a column answers."""
+    """What leaving out the levels of a column, or blocks of rows, answers."""
+    if is_of_blocks(column):
+        return (
+            f"Leaving out one {one(column)} at a time asks how well a model carries over to conditions at which nothing was "
+            "measured. Single rows of a sweep are predicted by their neighbours, whatever the model says of the whole."
+        )
     others = [plural(other) for other in grouped_by if other != column]
     rest = f" from the other {plural(column)}"
     if others:
@@ -37,10 +55,29 @@ def level_question(column: str, grouped_by: Sequence[str]) -> str:
     return f"Leaving out one {singular(column)} at a time asks how well a {singular(column)} never measured is predicted{rest}."
 
 
+def unreliable_data(name: str, unreliable: int, refitted: int, count: int) -> list[str]:
+    """Sentences on single data whose score is doubtful, and on those that were left out by a refit."""
+    said = []
+    if refitted:
+        what = f"each of the {count} data" if refitted == count else f"{refitted} of {count} data"
+        said.append(f"'{name}' was sampled anew without {what}, one at a time.")
+    if unreliable:
+        remedy = (
+            "refits without them leave their numbers uncertain too"
+            if refitted
+            else "refits without them would tell, which need the model and its data"
+        )
+        said.append(
+            f"'{name}': {unreliable} of {count} data influence the posterior so strongly that leaving them out cannot be "
+            f"estimated by importance sampling (Pareto k above the limit); {remedy}."
+        )
+    return said
+
+
 def unreliable_levels(name: str, left_out: LeftOut) -> list[str]:
     """Sentences on levels whose score is doubtful, and on those that were fitted anew."""
     said = []
-    count, what = len(left_out.levels), plural(left_out.column)
+    count, what = len(left_out.levels), many(left_out.column)
     again = [level for level in left_out.refitted if level not in left_out.unreliable]
     if again:
         said.append(f"'{name}' was sampled anew without {_some(again)}, {len(again)} of {count} {what}.")
@@ -49,7 +86,7 @@ def unreliable_levels(name: str, left_out: LeftOut) -> list[str]:
         remedy = (
             "even refits without them leave their numbers uncertain"
             if len(failed) == len(left_out.unreliable)
-            else "refits without them would tell (--refit)"
+            else "refits without them would tell, which need the model and its data"
         )
         said.append(
             f"'{name}': {len(left_out.unreliable)} of {count} {what} ({_some(left_out.unreliable)}) influence the posterior so "
@@ -59,15 +96,21 @@ def unreliable_levels(name: str, left_out: LeftOut) -> list[str]:
 
 
 def few_levels(left_out: LeftOut) -> list[str]:
-    """A warning if a standard error over levels means little."""
+    """Why there is no standard error over levels, if there is none."""
     count = len(left_out.levels)
     if count >= FEW_ROWS:
         return []
     return [
-        f"With {count} {plural(left_out.column)} the standard errors of what is predicted for them are not to be trusted."
+        f"With {count} {many(left_out.column)} a standard error of what is predicted for them would mean nothing and is not "
+        "given."
     ]
 
 
 def _some(levels: Sequence[str], at_most: int = 4) -> str:
     more = f" and {len(levels) - at_most} more" if len(levels) > at_most else ""
     return ", ".join(levels[:at_most]) + more
+
+
+def plus_minus(value: float, error: float | None, digits: int = 2) -> str:
+    """A number with its standard error, if it has one: ``"1.30 ± 0.20"``."""
+    return f"{value:.{digits}f}" + ("" if error is None else f" ± {error:.{digits}f}")

@@ -223,7 +223,7 @@ class Dataset:
         if not keep.any():
             raise InputError(f"data set '{self.key}': no row has {_wish(rows)}; expected at least one row")
         chosen_labels = {column: tuple(_labels(labels)) for column, labels in rows.items()}
-        return replace(self._rows(keep), selection={**self.selection, **chosen_labels})
+        return replace(self.rows(keep), selection={**self.selection, **chosen_labels})
 
     def complete(self, used: Collection[str], drop: bool) -> Dataset:
         """The rows that have a value in each of the columns ``used``.
@@ -269,9 +269,25 @@ class Dataset:
         if not keep.any():
             raise InputError(f"{self.path}: no row has a value in each of the columns {', '.join(empty)}")
         dropped = tuple(line for line, kept in zip(lines, keep, strict=True) if not kept)
-        return replace(self._rows(keep), dropped=tuple(sorted({*self.dropped, *dropped})))
+        return replace(self.rows(keep), dropped=tuple(sorted({*self.dropped, *dropped})))
 
-    def _rows(self, keep: NDArray[np.bool_]) -> Dataset:
+    def rows(self, keep: NDArray[np.bool_]) -> Dataset:
+        """Some of the rows.
+
+        Parameters
+        ----------
+        keep : which, shape ``(n_rows,)``
+
+        Returns
+        -------
+        Dataset
+            the same columns with fewer rows, in the same order
+
+        Examples
+        --------
+        >>> data.rows(np.array([True, False])).n_rows
+        1
+        """
         columns = {name: values[keep] for name, values in self.columns.items()}
         return replace(self, columns=columns, lines=tuple(compress(self.lines, keep)))
 

@@ -65,7 +65,8 @@ def assembled(
     target = problem.target()
     equal = draws.equally_weighted(MOST_DRAWS, np.random.default_rng([seed, 7]))
     density = draws.log_density
-    if density is None or density.shape != equal.shape[:2]:
+    # resampled draws are in another order, even where there are as many of them
+    if density is None or draws.log_weights is not None or density.shape != equal.shape[:2]:
         density = target.log_density(equal.reshape(-1, draws.dimension)).reshape(equal.shape[:2])
     rng = np.random.default_rng([seed, 1])  # apart from the streams of the ensembles
     groups = {

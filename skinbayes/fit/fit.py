@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.arrays import ArrayLike
 from skinbayes.atomic import write_atomically
+from skinbayes.fit.asked_fit import AskedFit
 from skinbayes.fit.netcdf import result_image
-from skinbayes.fit.result import FitResult
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Fit(FitResult):
+class Fit(AskedFit):
     """Posterior draws of a problem and everything computed from them.
 
     Its attributes, and what is computed from them, are those of :class:`~skinbayes.fit.result.FitResult`.

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log
+from math import hypot, log
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import expit
+from scipy.special import expit, logsumexp
 
 from skinbayes.arrays import FloatArray
-from skinbayes.problem.subsets import without_level
+from skinbayes.problem.subsets import without_data
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from skinbayes.problem import Problem
 
 REFIT_ESS = 1000.0
@@ -22,69 +24,103 @@ REFIT_ESS = 1000.0
 REFIT_STEPS = 4000
 """Steps after which a refit ends, converged or not: there may be many refits."""
 
-DRAWS_PER_CHAIN = 1000
+MOST_DRAWS = 4000
+"""Draws of a refit without weights that are looked at."""
+
+AGREEMENT = 5.0
+"""Standard errors by which the bridge and the difference of two ln Z may differ; those of a bridge over a gap are rough."""
 
 PART = 250
 """Draws whose densities are computed at a time, to bound memory."""
 
 
 @dataclass(frozen=True)
-class LeftOutDensity:
+class Refit:
     """Predictive density of data that were left out.
 
     Attributes
     ----------
-    log_density : ln p(data of the level | all other data)
+    log_density : ln p(data left out | all other data)
     error : its standard error, of Monte Carlo
-    converged : whether the posterior without these data was sampled until the stopping rule was met
+    reliable : whether the posterior without these data was sampled until the stopping rule was met, and the two ways to the
+        number agree where there are two
     """
 
     log_density: float
     error: float
-    converged: bool
+    reliable: bool
 
 
 def predict_left_out(
-    problem: Problem, column: str, level: str, whole: FloatArray, seed: int = 1, ess: float = REFIT_ESS
-) -> LeftOutDensity:
-    """Sample the problem without one level of a grouping column, and score the data of this level.
+    problem: Problem,
+    keep: NDArray[np.bool_],
+    whole: FloatArray,
+    effective: float,
+    evidence: tuple[float, float] | None = None,
+    seed: int = 1,
+    ess: float = REFIT_ESS,
+) -> Refit:
+    """Sample the problem without some of its data, and score these.
 
-    ln p(y_L | y_−L) is the ratio of the evidences of all data and of those without the level, from draws of both posteriors,
-    see :func:`ratio_of_evidences`.
+    ln p(y_L | y_−L) is the ratio of the evidences of all data and of those that are left, from draws of both posteriors, see
+    :func:`ratio_of_evidences`; or the difference of the two ln Z where both are known and that is more certain, as it is where
+    the posteriors hardly overlap.
 
     Parameters
     ----------
-    problem : a problem with data of one observable
-    column, level : what to leave out
-    whole : ln p(data of the level | all other data, θ) at draws from the posterior of all data, shape ``(S,)``
+    problem : a problem with data
+    keep : which data stay, shape ``(M,)``
+    whole : ln p(data left out | all other data, θ) at draws from the posterior of all data, shape ``(S,)``
+    effective : number of independent draws that these are worth
+    evidence : ln Z of all data and its standard error, if it is known
     seed : non-negative integer
     ess : effective sample size wanted in every parameter
-
-    Raises
-    ------
-    InputError
-        No such level, or no other one.
     """
-    from skinbayes.sampling.ensembles import run_ensembles
+    from skinbayes.sampling.ensemble_engine import EnsembleEngine
     from skinbayes.sampling.options import SamplerOptions
 
-    reduced = without_level(problem, column, level)
+    reduced = without_data(problem, keep)
     target = reduced.target()
-    chains = run_ensembles(target, SamplerOptions(seed=seed, ess=ess, max_steps=REFIT_STEPS))
-    positions, _ = chains.draws(DRAWS_PER_CHAIN)
-    draws = target.transform.inverse(positions.reshape(-1, positions.shape[-1]))
-    place = list(dict.fromkeys(problem.conditions.labels[column].tolist())).index(level)
-    density = np.concatenate(
-        [
-            problem.log_likelihood_left_out(draws[i : i + PART], column)[:, place]
-            for i in range(0, len(draws), PART)
-        ]
+    options = SamplerOptions(
+        seed=seed, ess=ess, max_steps=REFIT_STEPS, importance=True, expensive=problem.expensive
     )
-    value, error = ratio_of_evidences(density, whole)
-    return LeftOutDensity(value, error, chains.converged)
+    draws = EnsembleEngine().run(target, options)
+    weights = draws.log_weights
+    positions = (
+        draws.samples
+        if weights is not None
+        else draws.equally_weighted(MOST_DRAWS, np.random.default_rng(seed))
+    )
+    theta = target.transform.inverse(positions.reshape(-1, draws.dimension))
+    density = left_out_densities(problem, reduced, theta)
+    value, error = ratio_of_evidences(density, whole, None if weights is None else weights.ravel(), effective)
+    agree = True
+    if evidence is not None and draws.log_evidence is not None:
+        gap, its_error = evidence[0] - draws.log_evidence[0], hypot(evidence[1], draws.log_evidence[1])
+        agree = abs(gap - value) <= AGREEMENT * hypot(error, its_error)
+        if its_error < error:
+            value, error = gap, its_error
+    return Refit(value, error, bool(draws.diagnostics["converged"]) and agree)
 
 
-def ratio_of_evidences(without: FloatArray, whole: FloatArray) -> tuple[float, float]:
+def left_out_densities(problem: Problem, reduced: Problem, theta: FloatArray) -> FloatArray:
+    """ln p(data left out | all other data, θ) by the rule of products, shape ``(S,)``.
+
+    Parameters
+    ----------
+    problem, reduced : with all data, and without those left out
+    theta : parameter vectors, shape ``(S, D)``
+    """
+    parts = [theta[i : i + PART] for i in range(0, len(theta), PART)]
+    return np.concatenate([problem.log_likelihood(part) - reduced.log_likelihood(part) for part in parts])
+
+
+def ratio_of_evidences(
+    without: FloatArray,
+    whole: FloatArray,
+    log_weights: FloatArray | None = None,
+    effective: float | None = None,
+) -> tuple[float, float]:
     """ln of the ratio of two evidences from draws of both posteriors, by the best bridge between them.
 
     Let the posterior of all data be that without some of them times exp(u), not normalised. Then for any c
@@ -97,7 +133,9 @@ def ratio_of_evidences(without: FloatArray, whole: FloatArray) -> tuple[float, f
 
     Parameters
     ----------
-    without, whole : u at independent draws of the two posteriors, shapes ``(S0,)`` and ``(S,)``
+    without, whole : u at draws of the two posteriors, shapes ``(S0,)`` and ``(S,)``
+    log_weights : of the draws without the data, up to a constant, shape ``(S0,)``; None if they all weigh the same
+    effective : number of independent draws that those with all data are worth; S if omitted
 
     Returns
     -------
@@ -114,18 +152,27 @@ def ratio_of_evidences(without: FloatArray, whole: FloatArray) -> tuple[float, f
     >>> round(ratio, 6), round(error, 6)
     (-2.5, 0.0)
     """
-    shift = log(len(whole) / len(without))
+    weights = np.full(len(without), -log(len(without))) if log_weights is None else log_weights
+    weights = np.exp(weights - logsumexp(weights))
+    counts = float(1 / np.square(weights).sum()), float(effective or len(whole))
+    shift = log(counts[1] / counts[0])
     both = np.concatenate([without, whole])
     finite = both[np.isfinite(both)]
     if not finite.size:
         return float("-inf"), float("inf")
 
+    def terms(ratio: float) -> tuple[FloatArray, FloatArray]:
+        return expit(without - ratio + shift), expit(ratio - shift - whole)
+
     def imbalance(ratio: float) -> float:
-        return float(expit(without - ratio + shift).sum() - expit(ratio - shift - whole).sum())
+        first, second = terms(ratio)
+        return float(counts[0] * (weights @ first) - counts[1] * second.mean())
 
     low, high = finite.min() - abs(shift) - 40.0, finite.max() + abs(shift) + 40.0
     ratio = float(brentq(imbalance, low, high, xtol=1e-10))
-    terms = (expit(without - ratio + shift), expit(ratio - shift - whole))
+    first, second = terms(ratio)
     with np.errstate(divide="ignore", invalid="ignore"):
-        variance = sum(float(term.var() / term.mean() ** 2 / len(term)) for term in terms)
+        mean = weights @ first
+        variance = np.square(weights) @ np.square(first - mean) / mean**2
+        variance += second.var() / second.mean() ** 2 / counts[1]
     return ratio, float(np.sqrt(variance)) if np.isfinite(variance) else float("inf")

@@ -23,9 +23,15 @@ class Likelihood:
 
     ``y = f(θ) + effects + noise``, or ``ln y = ln f(θ) + effects + noise`` where the noise is logarithmic. Effects of groups
     are normal and integrated out.
+
+    Attributes
+    ----------
+    problem : what predicts
+    counted : which data enter ``total``, shape ``(M,)``, where there are no groups; None for all
     """
 
     problem: PredictingModel
+    counted: NDArray[np.bool_] | None = None
 
     def pointwise(self, theta: FloatArray) -> FloatArray:
         """ln p of each datum, shape ``(B, M)``: given θ, and given all other data where groups share effects."""
@@ -129,7 +135,8 @@ class Likelihood:
     def _total(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
         groups = self.problem.groups
         if groups is None:
-            return self._pointwise(inputs, predicted).sum(axis=-1)
+            each = self._pointwise(inputs, predicted)
+            return (each if self.counted is None else each[..., self.counted]).sum(axis=-1)
         residual, width, scales, offset = self._residuals(groups, inputs, predicted[0])
         density = groups.log_density(residual, width, scales) + offset.sum()
         return np.where(np.isnan(predicted[0]).any(axis=-1), np.nan, density)

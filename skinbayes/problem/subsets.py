@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.errors import InputError
 from skinbayes.problem.deduplicated_rows import kinds
 from skinbayes.problem.inputs import Conditions
 from skinbayes.statistics.groups import CrossedGroups
@@ -20,58 +19,44 @@ if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
 
 
-def without_level(problem: Problem, column: str, level: str) -> Problem:
-    """The problem without the data of one level of a grouping column, such as one person.
+def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem:
+    """The problem without some of its data, such as those of one person.
 
     Its parameters are those of the whole problem, in the same order, so that draws of one are parameter vectors of the other. A
-    parameter of that level alone stays, with nothing but its prior to say on it.
+    parameter of nothing but data that are left out stays, with only its prior to say on it.
 
     Parameters
     ----------
     problem : a problem with data
-    column : grouping column
-    level : the level whose rows go
+    keep : which data stay, shape ``(M,)``: those of the first observable, then those of the second, …
 
     Returns
     -------
     Problem
         what the forward model has prepared is shared
 
-    Raises
-    ------
-    InputError
-        No data, no such column or level, or no other level
-
     Examples
     --------
     >>> from skinbayes.problem import load_problem
-    >>> without_level(load_problem("finger-water"), "person", "ID01").conditions.n_rows
+    >>> problem = load_problem("finger-water")
+    >>> without_data(problem, problem.conditions.labels["person"] != "ID01").conditions.n_rows
     10
     """
-    labels = problem.conditions.labels
-    if problem.dataset is None or not problem.observations or column not in labels:
-        raise InputError(
-            f"{problem.spec.path}: '{problem.name}' has no data with a column '{column}'; "
-            f"grouping columns: {', '.join(labels) or 'none'}"
-        )
-    others = [other for other in dict.fromkeys(labels[column].tolist()) if other != level]
-    keep = labels[column] != level
-    if keep.all() or not others:
-        raise InputError(
-            f"{problem.spec.path}: {column} '{level}' cannot be left out: "
-            + ("there is no other" if not others else f"expected one of {', '.join(others)}")
-        )
-    groups = problem.groups
-    kept_labels = {name: values[keep] for name, values in labels.items()}
+    if len(problem.observations) > 1 or not keep.any() or problem.dataset is None:
+        reduced = replace(problem)
+        reduced.__dict__["model"] = problem.model
+        reduced.__dict__["likelihood"] = replace(problem.likelihood, counted=keep)
+        return reduced
+    labels, groups = problem.conditions.labels, problem.groups
     return _of_rows(
         problem,
         keep,
-        dataset=problem.dataset.select({column: others}),
+        dataset=problem.dataset.rows(keep),
         observations=tuple(
             replace(o, values=o.values[keep], spread=o.spread[keep]) for o in problem.observations
         ),
         input_spread=_kept(problem.input_spread, keep),
-        groups=groups and CrossedGroups.of_labels({name: kept_labels[name] for name in groups.columns}),
+        groups=groups and CrossedGroups.of_labels({name: labels[name][keep] for name in groups.columns}),
     )
 
 

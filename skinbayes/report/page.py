@@ -13,6 +13,7 @@ from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.markup import links, symbols
 from skinbayes.report.ridges import ridge_sentences
+from skinbayes.report.sensitivity import EXPLAINED, HEADERS, page_sensitivity
 from skinbayes.report.validity import validity_sentences
 
 if TYPE_CHECKING:
@@ -112,6 +113,7 @@ def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[s
         **_baselines(baseline_models),
         "agreement": quality.agreement(fit),
         "convergence": [sentences.with_symbols(fit, sentence) for sentence in quality.convergence(fit)],
+        "sensitivity": _sensitivity(fit),
         "assumptions": _assumptions(fit, check),
         "fixed": tables.fixed_rows(fit),
         "some_tied": bool(fit.provenance.get("tied")),
@@ -137,6 +139,17 @@ def _baselines(baseline_models: AgainstBaselines | None) -> dict[str, Any]:
             "headers": baseline_models.headers(),
             "rows": baseline_models.rows(),
         },
+    }
+
+
+def _sensitivity(fit: Fit) -> dict[str, Any]:
+    """Sentences and table on the priors, with symbols."""
+    rows, said = page_sensitivity(fit)
+    return {
+        "sentences": [sentences.with_symbols(fit, sentence) for sentence in said],
+        "headers": HEADERS,
+        "rows": [[sentences.with_symbols(fit, cell) for cell in row] for row in rows],
+        "explained": EXPLAINED,
     }
 
 

@@ -17,6 +17,7 @@ from skinbayes.plot.predictive import (
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
+from skinbayes.report.repeats import beyond_repeats, repeat_sentences
 from skinbayes.report.trends import is_logarithmic, trend_sentences
 from skinbayes.statistics.agreement import Agreement
 from skinbayes.statistics.agreement import examine as agreement_of
@@ -39,13 +40,14 @@ def examine(fit: Fit) -> Agreement:
 
 
 def misfit(fit: Fit) -> bool:
-    """Whether single values, mean, scatter or a trend of the residuals speak against the model."""
-    return examine(fit).misfit or bool(trend_sentences(fit))
+    """Whether single values, mean, scatter, a trend of the residuals or repeats speak against the model."""
+    return examine(fit).misfit or bool(trend_sentences(fit)) or bool(beyond_repeats(fit))
 
 
 def verdict(fit: Fit) -> list[str]:
     """Whether the model fits, in a few sentences; what only looks like a good fit is not praised."""
-    found, follows = examine(fit), trend_sentences(fit)
+    found, trends, beyond = examine(fit), trend_sentences(fit), beyond_repeats(fit)
+    follows = trends + beyond
     inside = (
         f"{found.wide} of {found.count} values lie in their 90 % ranges "
         f"(about {number(0.9 * found.count, 2)} expected)"
@@ -60,7 +62,8 @@ def verdict(fit: Fit) -> list[str]:
             *follows,
         ]
     elif follows:
-        said = ["The model misses a trend.", *follows, "Do not use its values before it is clear why."]
+        start = "The model misses a trend." if trends else "The model misses what is no noise."
+        said = [start, *follows, "Do not use its values before it is clear why."]
     elif found.count < FEW:
         said = [
             "Hardly tested: almost any model with as many parameters agrees with "
@@ -68,6 +71,7 @@ def verdict(fit: Fit) -> list[str]:
         ]
     else:
         said = [f"Single values, mean, scatter and trends do not speak against it: {inside}."]
+    said += [] if beyond else repeat_sentences(fit)
     if group_columns(fit):
         many = and_list([plural(column) for column in group_columns(fit)])
         said.append(f"What is predicted knows the effects of the {many} measured.")

@@ -30,12 +30,17 @@ ORDER = "order"
 
 def residual_trends(fit: Fit) -> dict[str, tuple[Trend, ...]]:
     """Checks of the residuals along every column that varies and in the order of the rows, by observable."""
+    columns = columns_of_rows(fit)
+    return {name: trends(data, simulated, columns) for name, (data, simulated) in residuals_of(fit).items()}
+
+
+def residuals_of(fit: Fit) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Residuals of the data ``(N,)`` and of simulated data ``(S, N)`` from typical predictions, by observable."""
     names = observables(fit)
     observed = observed_values(fit).reshape(len(names), -1)
     draws = predictive_draws(fit)
     most = max(FEWEST_DRAWS, min(MOST_DRAWS, MOST_NUMBERS // observed.size))
     draws = draws[:: max(1, len(draws) // most)].reshape(-1, len(names), observed.shape[1])
-    columns = columns_of_rows(fit)
     found = {}
     for place, name in enumerate(names):
         logarithmic = is_logarithmic(fit, name)
@@ -44,7 +49,7 @@ def residual_trends(fit: Fit) -> dict[str, tuple[Trend, ...]]:
             usable = simulated[np.isfinite(simulated).all(axis=1)]
             if len(usable):
                 middle = np.median(usable, axis=0)
-                found[name] = trends(data - middle, usable - middle, columns)
+                found[name] = (data - middle, usable - middle)
     return found
 
 

@@ -2,9 +2,71 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from scipy.special import logsumexp
 
 from skinbayes.arrays import FloatArray
+
+
+class LeftOutDensity(NamedTuple):
+    """ln p(data | all other data) from weights.
+
+    Attributes
+    ----------
+    log_density : the estimate
+    error : its standard error, of Monte Carlo
+    shape : k̂ of the weights
+    """
+
+    log_density: float
+    error: float
+    shape: float
+
+
+def largest_shape(effective: float) -> float:
+    """Largest k̂ at which smoothed weights of so many independent draws can be relied on: min(1 − 1/log10 S, 0.7).
+
+    Examples
+    --------
+    >>> round(largest_shape(100), 3), round(largest_shape(1000), 3), largest_shape(10_000)
+    (0.5, 0.667, 0.7)
+    """
+    return float(min(1 - 1 / np.log10(effective), 0.7)) if effective > 10 else 0.0
+
+
+def left_out_density(
+    log_density: FloatArray, effective: float, log_weights: FloatArray | None = None
+) -> LeftOutDensity:
+    """ln p(data left out | all other data), by Pareto-smoothed importance sampling.
+
+    The importance of a draw of the posterior for that without the data is one over their density; the draw's own weight,
+    if it has one, times that. Vehtari, Gelman & Gabry 2017, doi 10.1007/s11222-016-9696-4.
+
+    Parameters
+    ----------
+    log_density : ln p(data left out | all other data, θ) at the draws, shape ``(S,)``
+    effective : number of independent draws of the posterior that these are worth
+    log_weights : of the draws, up to a constant, shape ``(S,)``; None if they all weigh the same
+
+    Examples
+    --------
+    >>> found = left_out_density(np.full(100, -2.5), 100)
+    >>> round(found.log_density, 6), round(found.error, 6), found.shape
+    (-2.5, 0.0, -inf)
+    """
+    if not np.isfinite(log_density).all():
+        return LeftOutDensity(float("-inf"), float("inf"), float("inf"))
+    weights, shape = smoothed(-log_density if log_weights is None else log_weights - log_density)
+    weights = weights - logsumexp(weights)
+    value = float(logsumexp(weights + log_density))
+    # the error of a ratio of means; draws of equal weight that depend on each other count for less
+    times = max(1.0, log_density.size / effective) if log_weights is None else 1.0
+    with np.errstate(over="ignore", invalid="ignore"):
+        deviation = np.exp(weights) * np.expm1(log_density - value)
+        error = float(np.sqrt(np.square(deviation).sum() * times))
+    return LeftOutDensity(value, error if np.isfinite(error) else float("inf"), shape)
 
 
 def pareto_shape(ratios: FloatArray) -> float:

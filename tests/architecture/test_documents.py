@@ -74,9 +74,14 @@ def test_check_says_what_the_readme_quotes(tmp_path: Any) -> None:
 
 
 def test_the_comparison_is_the_one_of_the_command_line_page() -> None:
-    quoted = re.search(r"difference of ([\d.]+ ± [\d.]+) in predictive density", README)
+    quoted = re.search(
+        r"difference of ([\d.]+) in predictive density.* probabilities of (0\.\d+) and (0\.\d+)", README
+    )
     assert quoted is not None
-    assert f"differ by {quoted[1]}." in PAGE.read_text(encoding="utf-8")
+    page = PAGE.read_text(encoding="utf-8")
+    assert f"differ by {quoted[1]} " in page
+    shown = re.findall(r"^ forearm-glass\S* .* (0\.\d{3})$", page, re.MULTILINE)
+    assert [f"{float(one):.2f}" for one in shown] == [quoted[2], quoted[3]]
 
 
 def test_python_example_and_the_table_of_results() -> None:

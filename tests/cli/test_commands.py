@@ -162,7 +162,7 @@ def test_not_converged_is_said_loudly(runs, capsys, monkeypatch):
     assert document.document()["converged"] is False and "Not converged" in document.document()["verdict"]
     text = run(capsys, *words, "-o", "short", "--resume")
     assert text.status == 3 and "NOT CONVERGED" in text.output
-    compared = run(capsys, "compare", "first", "short", "--json")
+    compared = run(capsys, "compare", "first", "short", "--no-refit", "--json")
     assert compared.status == 0
     assert any("NOT CONVERGED" in sentence for sentence in compared.document()["sentences"])
     assert "not converged" in run(capsys, "report", "short", "-o", "short.html").output.lower() or (
@@ -172,10 +172,10 @@ def test_not_converged_is_said_loudly(runs, capsys, monkeypatch):
 
 def test_compare(runs, capsys):
     folder, _ = runs
-    document = run(capsys, "compare", folder / "first", folder / "first", "--json").document()
+    document = run(capsys, "compare", folder / "first", folder / "first", "--no-refit", "--json").document()
     assert [model["elpd_difference"] for model in document["models"]] == [0.0, 0.0]
     assert {"name", "elpd_loo", "elpd_loo_se", "weight"} <= set(document["models"][0])
-    text = run(capsys, "compare", folder / "first", folder / "first")
+    text = run(capsys, "compare", folder / "first", folder / "first", "--no-refit")
     assert text.status == 0 and "do not tell" in " ".join(text.output.split())
     assert run(capsys, "compare", folder / "first").status == 2
 

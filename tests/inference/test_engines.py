@@ -239,14 +239,14 @@ def test_everything_of_a_weighted_fit_agrees_with_its_weights(problem, weighted,
     lp = weighted.groups["sample_stats"]["lp"].values.ravel()[::500]
     assert_allclose(lp, problem.target().log_density(problem.target().transform.forward(some)), rtol=1e-9)
     # cross-validation of draws with copies is that of the weights: p(y_i | others) = Σw / Σ(w / p_i)
-    from skinbayes.fit.arviz_adapter import loo
+    from skinbayes.comparison.scores import score
 
     likely = (
         weights > 1e-6 * weights.max()
     )  # the rest makes the mean of 1/p one of a few draws, which PSIS smooths
     density = problem.log_likelihood(theta[likely], pointwise=True)
     expected = np.log(weights[likely].sum()) - np.log(weights[likely] @ np.exp(-density))
-    assert_allclose(loo(weighted.groups)["pointwise"], expected, atol=0.05)
+    assert_allclose(score(weighted).single.pointwise, expected, atol=0.05)
     # and a file keeps all of it
     again = load_fit(weighted.save(tmp_path / "run.nc"))
     same_draws(weighted, again)
