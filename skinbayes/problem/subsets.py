@@ -61,8 +61,13 @@ def without_level(problem: Problem, column: str, level: str) -> Problem:
             f"{problem.spec.path}: {column} '{level}' cannot be left out: "
             + ("there is no other" if not others else f"expected one of {', '.join(others)}")
         )
-    groups = problem.groups
+    groups, shared = problem.groups, problem.correlated
     kept_labels = {name: values[keep] for name, values in labels.items()}
+    if shared is not None:  # all of its effects stay, as those of the curves do
+        shared = shared.rows(keep)
+        groups = shared.scatter.groups
+    elif groups is not None:
+        groups = CrossedGroups.of_labels({name: kept_labels[name] for name in groups.columns})
     return _of_rows(
         problem,
         keep,
@@ -71,7 +76,8 @@ def without_level(problem: Problem, column: str, level: str) -> Problem:
             replace(o, values=o.values[keep], spread=o.spread[keep]) for o in problem.observations
         ),
         input_spread=_kept(problem.input_spread, keep),
-        groups=groups and CrossedGroups.of_labels({name: kept_labels[name] for name in groups.columns}),
+        groups=groups,
+        correlated=shared,
     )
 
 
@@ -94,7 +100,7 @@ def one_row_of_each_level(problem: Problem) -> Problem:
     _, first = np.unique(kinds(list(rows.labels.values()), rows.n_rows), return_index=True)
     keep = np.zeros(rows.n_rows, dtype=bool)
     keep[first] = True
-    return _of_rows(problem, keep, observations=(), input_spread={}, groups=None)
+    return _of_rows(problem, keep, observations=(), input_spread={}, groups=None, correlated=None)
 
 
 def _of_rows(problem: Problem, keep: NDArray[np.bool_], **changes: Any) -> Problem:
