@@ -194,7 +194,9 @@ _ALL = (
     Quantity(
         "discrepancy_length", "l_δ", "1", "length of that curve as a fraction of the range of the column"
     ),
-    Quantity("correlation_length", "l_c", "1", "distance over which the correlation of the noise falls to 1/e"),
+    Quantity(
+        "correlation_length", "l_c", "1", "distance over which the correlation of the noise falls to 1/e"
+    ),
     Quantity(
         "independent_fraction",
         "f_i",

@@ -73,15 +73,13 @@ def closed_form_noise(noise: Mapping[str, str], place: str, what: str) -> tuple[
     if not noise:
         raise InputError(f"{place}: {what} {verb} data; leave it out, or add [data] and [noise]")
     if len(noise) > 1:
-        raise InputError(
-            f"{place}: {what} {verb} a model of one observable; this one has {', '.join(noise)}"
-        )
+        raise InputError(f"{place}: {what} {verb} a model of one observable; this one has {', '.join(noise)}")
     ((observable, family),) = noise.items()
     if not NOISE_FAMILIES[family].closed_form_groups:
         usable = [name for name, kind in NOISE_FAMILIES.items() if kind.closed_form_groups]
         raise InputError(
-            f"{place}: {what} {'is' if verb == 'needs' else 'are'} integrated out in closed form, which noise '{family}' does not "
-            f"allow; expected {' or '.join(usable)}"
+            f"{place}: {what} {'is' if verb == 'needs' else 'are'} integrated out in closed form, which noise '{family}' does "
+            f"not allow; expected {' or '.join(usable)}"
         )
     return family, "1" if NOISE_FAMILIES[family].logarithmic else QUANTITIES[observable].unit
 

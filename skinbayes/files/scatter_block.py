@@ -140,8 +140,8 @@ def read_correlation(
     _known(block.along, where("noise", "correlation", "along"))
     if "use" in spreads or any(p.name == "discrepancy_scale" for p in noise_parameters):
         raise InputError(
-            f"{place}: all of the noise is correlated, which reading errors (spread, input_spread) and a discrepancy_scale row by "
-            "row are not; leave them out, or the correlation. 'independent' is the part of the noise that differs from row to row"
+            f"{place}: all of the noise is correlated, which reading errors (spread, input_spread) and a discrepancy_scale are "
+            "not; leave them out, or the correlation. 'independent' is the part of the noise that differs from row to row"
         )
     if block.within is not None:
         label_column(block.within, where("noise", "correlation", "within"))
@@ -171,6 +171,6 @@ def _of_column(entry: Any, column: str, place: str) -> Any:
 def _known(column: str, place: str) -> None:
     if column != ORDER and column not in QUANTITIES:
         raise InputError(
-            f"{place}: unknown quantity '{column:.60}'.{suggestions(column, [*QUANTITIES, ORDER])} Expected a numeric column of the "
-            f"data, or '{ORDER}' for the order of the rows"
+            f"{place}: unknown quantity '{column:.60}'.{suggestions(column, [*QUANTITIES, ORDER])} Expected a numeric column "
+            f"of the data, or '{ORDER}' for the order of the rows"
         )

@@ -67,8 +67,8 @@ def build_problem(
     missing : ``"drop"`` to leave out rows without a value in a column that is used
     surface : a named surface, the path of a spectrum, or a spectrum
     groups : label column to the prior of the scale of the effects that its rows share
-    discrepancy : ``along`` which column or columns the theory misses smooth curves; ``within`` which label, on which ``axis``, and
-        the priors of ``size`` and ``length`` if they are not the usual ones
+    discrepancy : ``along`` which column or columns the theory misses smooth curves; ``within`` which label, on which ``axis``,
+        and the priors of ``size`` and ``length`` if they are not the usual ones
     covariates : name to ``column``, ``acts_on``, ``reference`` and ``exponent``
     rheology : ``by`` (a label column) and ``data``, flow curves of the liquids, in any form that data have
     derived : name to ``product`` and, if wanted, ``rows``, ``symbol``, ``meaning``

@@ -15,7 +15,6 @@ from skinbayes.problem.observations import NOISE_WORDS, Observation, propagated_
 from skinbayes.problem.pieces import in_pieces
 from skinbayes.problem.predicting import PredictingModel
 from skinbayes.statistics.correlated_scatter import CorrelatedScatter
-from skinbayes.statistics.groups import CrossedGroups
 
 
 @dataclass(frozen=True)
@@ -72,7 +71,9 @@ class Likelihood:
                 drawn.append(o.noise.draw(rng, predicted[:, i], observed=o.values, **arguments))
             else:
                 apart = noise * o.noise.width(predicted[:, i], observed=o.values, **arguments)
-                drawn.append(predicted[:, i] * np.exp(apart) if o.noise.logarithmic else predicted[:, i] + apart)
+                drawn.append(
+                    predicted[:, i] * np.exp(apart) if o.noise.logarithmic else predicted[:, i] + apart
+                )
         if shared is not None:
             if effects is None:
                 effects = shared.draw_new_effects(rng, self._scales(inputs, len(theta)))
@@ -85,7 +86,9 @@ class Likelihood:
         """All that rows share given parameters and data, shape ``(B, G)``: effects of groups first."""
         groups = self.problem.shared
         if groups is None:
-            raise InputError(f"{self.problem.spec.path}: '{self.problem.name}' has no [groups] or [discrepancy]")
+            raise InputError(
+                f"{self.problem.spec.path}: '{self.problem.name}' has no [groups] or [discrepancy]"
+            )
 
         def piece(part: FloatArray) -> FloatArray:
             inputs, (predicted,) = self._predictions(part)

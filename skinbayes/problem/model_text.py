@@ -73,9 +73,11 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
         content["discrepancy"] = _discrepancy(spec.discrepancy, shared)
     if spec.correlation is not None:
         one = spec.correlation
-        content["noise"]["correlation"] = {"along": one.along} | ({"within": one.within} if one.within else {}) | {
-            key: shared[name] for key, name in CORRELATION_KEYS.items() if name in shared
-        }
+        content["noise"]["correlation"] = (
+            {"along": one.along}
+            | ({"within": one.within} if one.within else {})
+            | {key: shared[name] for key, name in CORRELATION_KEYS.items() if name in shared}
+        )
     if spec.covariates:
         content["covariates"] = {
             c.name: {

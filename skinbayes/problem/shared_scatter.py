@@ -101,7 +101,9 @@ class SharedScatter:
             yield axis, values, own @ curve.interpolation(np.linspace(0.0, 1.0, count)).T
 
 
-def scatter_parameters(spec: ModelSpec, rows: Conditions, columns: dict[str, FloatArray]) -> tuple[ParameterSpec, ...]:
+def scatter_parameters(
+    spec: ModelSpec, rows: Conditions, columns: dict[str, FloatArray]
+) -> tuple[ParameterSpec, ...]:
     """Parameters of discrepancy and correlation, with the usual priors of those that the model file does not give.
 
     Raises
@@ -123,7 +125,7 @@ def scatter_parameters(spec: ModelSpec, rows: Conditions, columns: dict[str, Flo
             least = min(max(LEAST_LENGTH, SPACINGS * spacing), 0.5)
             prior = {
                 "loguniform": [float(f"{least:.3g}"), 1.0],
-                "source": f"usual: from {'two spacings of the data' if least > LEAST_LENGTH else 'a tenth of'} to the whole range",
+                "source": "usual: from two spacings of the data, at least a tenth of their range, to all of it",
             }
             quantity = QUANTITIES["discrepancy_length"]
             found.append(parse_parameter(quantity, prior, str(spec.path), "1", DISCREPANCY, axis.column))
@@ -134,7 +136,9 @@ def scatter_parameters(spec: ModelSpec, rows: Conditions, columns: dict[str, Flo
             values = _column(spec, "noise.correlation.along", along, rows, columns)
             gaps = np.diff(np.unique(values))
             if gaps.size < FEWEST_VALUES:
-                raise InputError(f"{spec.path}: noise.correlation: only {gaps.size + 1} different values of {along}")
+                raise InputError(
+                    f"{spec.path}: noise.correlation: only {gaps.size + 1} different values of {along}"
+                )
             ends = [float(f"{end:.3g}") for end in (np.median(gaps) / 2, np.ptp(values) / 4)]
             prior = {
                 "loguniform": ends if unit == "1" else [f"{end} {unit}" for end in ends],
@@ -165,15 +169,17 @@ def shared_scatter(
         return None
     axes = _axes(spec, rows, columns)
     known = {p.label: p for p in parameters}
-    curves, names = [], [] if groups is None else [f"group_scale[{column}]" for column in groups.columns]
+    curves: list[SmoothCurves] = []
+    names = [] if groups is None else [f"group_scale[{column}]" for column in groups.columns]
     for axis in axes:
         label = f"discrepancy_length[{axis.column}]"
-        least = known[label].value or float(known[label].prior.quantile(1e-3))  # type: ignore[union-attr]
+        length, prior = known[label].value, known[label].prior
+        least = float(length or 1.0) if prior is None else float(prior.quantile(1e-3))
         level, _ = _levels(spec, "discrepancy", axis.within, rows)
         x = axis.coordinate(_column(spec, "discrepancy.along", axis.column, rows, columns))
         curves.append(SmoothCurves(x, level, len(axis.levels), nodes_for(least)))
         names += [f"discrepancy_size[{axis.column}]", label]
-    noise, series, drift = None, (), False
+    noise, drift, series = None, False, tuple[str, ...]()
     if spec.correlation is not None:
         one = spec.correlation
         level, series = _levels(spec, "noise.correlation", one.within, rows)
@@ -188,8 +194,8 @@ def shared_scatter(
     scatter = CorrelatedScatter(rows.n_rows, groups, tuple(curves), noise, drift)
     if scatter.n_effects > MOST_EFFECTS:
         raise InputError(
-            f"{spec.path}: groups, curves and drifts are {scatter.n_effects} effects together; expected at most {MOST_EFFECTS}, with "
-            "which time and memory were measured: take longer curves, or the same one for all levels"
+            f"{spec.path}: groups, curves and drifts are {scatter.n_effects} effects together; expected at most {MOST_EFFECTS}, "
+            "with which time and memory were measured: take longer curves, or the same one for all levels"
         )
     return SharedScatter(scatter, tuple(names), axes, series)
 
@@ -251,7 +257,8 @@ def _levels(
         return np.zeros(rows.n_rows, dtype=np.intp), ("",)
     if column not in rows.labels:
         raise InputError(
-            f"{spec.path}: {key}.within: the data have no column '{column}'.{label_meant(column, rows.labels)}".rstrip(".")
+            f"{spec.path}: {key}.within: the data have no column '{column}'."
+            f"{label_meant(column, rows.labels)}".rstrip(".")
         )
     place: dict[str, int] = {}
     level = [place.setdefault(label, len(place)) for label in rows.labels[column].tolist()]
@@ -267,5 +274,7 @@ def _column(
         known = ", ".join([*columns, ORDER])
         raise InputError(f"{spec.path}: {key}: the data have no column '{column}'; numeric columns: {known}")
     if column in spec.observables:
-        raise InputError(f"{spec.path}: {key}: '{column}' is what the model explains; expected another column")
+        raise InputError(
+            f"{spec.path}: {key}: '{column}' is what the model explains; expected another column"
+        )
     return columns[column]

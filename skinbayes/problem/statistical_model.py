@@ -78,8 +78,8 @@ class StatisticalModel(PredictingModel):
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
         """Log-likelihood of the data.
 
-        Where rows share effects, a discrepancy or correlated noise, the pointwise terms are ln p(datum | all others, θ), which is what leaving one out needs; they do
-        not sum to the whole. NaN and +inf from the forward model become −inf.
+        Where rows share effects, a discrepancy or correlated noise, the pointwise terms are ln p(datum | all others, θ), which is
+        what leaving one out needs; they do not sum to the whole. NaN and +inf from the forward model become −inf.
 
         Parameters
         ----------
@@ -286,8 +286,7 @@ class StatisticalModel(PredictingModel):
         return unbatch(self.likelihood.draw(batch, rng, effects), single)
 
     def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
-        """Draw all that rows share given parameters and data: effects of groups, then curves of the discrepancy at their nodes, then
-        drifts.
+        """Draw all that rows share given parameters and data: effects of groups, curves of the discrepancy, drifts.
 
         Parameters
         ----------

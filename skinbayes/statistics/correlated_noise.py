@@ -12,7 +12,7 @@ inverse of the correlation matrix; an error of u enters squares in second order 
 References
 ----------
 Rue & Held, Gaussian Markov Random Fields, Chapman & Hall (2005), doi 10.1201/9780203492024;
-Pinheiro & Bates, Mixed-Effects Models in S and S-PLUS, Springer (2000), doi 10.1007/b98882, chapter 5 (serial correlation, nugget).
+Pinheiro & Bates, Mixed-Effects Models in S and S-PLUS, Springer (2000), doi 10.1007/b98882, chapter 5 (correlation, nugget).
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ class _Memory:
     fraction: FloatArray
 
     def whiten(self, columns: FloatArray) -> FloatArray:
-        """Numbers whose inner products are those of the columns with the inverse of C, ``(B, N, K)`` to ``(B, N or N + S, K)``."""
+        """Numbers whose inner products are those of columns ``(B, N, K)`` with the inverse of C; ``(B, N or N + S, K)``."""
         sorted_rows = np.take(columns, self.noise.order, axis=1)
         if not self.noise.independent:
             return self._innovations(sorted_rows)

@@ -2,10 +2,10 @@
 
     r = Σ_c b_c + Σ_k g_k(x_k) + a·t + ε,    ε = w · η
 
-with effects b of levels (:mod:`skinbayes.statistics.groups`), smooth curves g (:mod:`skinbayes.statistics.smooth_curves`), a drift a
-that is linear in time, normal about zero, and noise η of width 1 that is independent or correlated
-(:mod:`skinbayes.statistics.correlated_noise`). All of these are normal effects u with a design X and a factor F of their
-covariance: u = F z, z ~ N(0, I), so that Σ = w C wᵀ + X F Fᵀ Xᵀ. With rows and design whitened by w and C,
+with effects b of levels (:mod:`skinbayes.statistics.groups`), smooth curves g (:mod:`skinbayes.statistics.smooth_curves`), a
+drift a that is linear in time, normal about zero, and noise η of width 1 that is independent or correlated
+(:mod:`skinbayes.statistics.correlated_noise`). Effects, curves and drift are normal effects u with a design X and a factor F of
+their covariance: u = F z, z ~ N(0, I), so that Σ = w C wᵀ + X F Fᵀ Xᵀ. With rows and design whitened by w and C,
 
     Q = I + Fᵀ Xᵀ X F,    ln det Σ = ln det(w C w) + ln det Q,    rᵀ Σ⁻¹ r = min over z of |r − X F z|² + |z|²
 
@@ -23,8 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.errors import InputError
-from skinbayes.statistics._group_algebra import ConditionedEffects, condition_effects
+from skinbayes.statistics._group_algebra import ConditionedEffects, condition_effects, lower_factors
 from skinbayes.statistics._group_input import GroupData, group_data
 from skinbayes.statistics.correlated_noise import CorrelatedNoise
 from skinbayes.statistics.groups import CrossedGroups
@@ -41,9 +40,9 @@ class CorrelatedScatter:
     """What the rows of a model share beside its prediction; its methods are those of :class:`CrossedGroups`.
 
     ``residual`` and ``width`` are as there. ``scales`` of shape ``(B, P)`` are, in this order: the scale of the effects of each
-    grouping column; size and length of the curves along each column; length of the memory of the noise, its independent fraction if
-    it has one, and the scale of the drift if there is one. Effects are those of the groups, the values of curves at their nodes,
-    and the drift of each series over the longest one.
+    grouping column; size and length of the curves along each column; length of the memory of the noise, its independent
+    fraction if it has one, and the scale of the drift if there is one. Effects are those of the groups, the values of curves at
+    their nodes, and the drift of each series over the longest one.
 
     Attributes
     ----------
@@ -98,14 +97,27 @@ class CorrelatedScatter:
     @property
     def drift_effects(self) -> slice:
         """Where the drifts of the series are among the effects."""
-        return slice(self.n_effects - (self.noise.n_series if self.noise and self.drift else 0), self.n_effects)
+        return slice(
+            self.n_effects - (self.noise.n_series if self.noise and self.drift else 0), self.n_effects
+        )
 
     def log_density(self, residual: ArrayLike, width: ArrayLike, scales: ArrayLike) -> FloatArray:
         """Joint log-density of all rows, everything shared integrated out, shape ``(B,)``; −inf for impossible input."""
 
         def part(data: GroupData) -> FloatArray:
-            solved = _Solved.of(self, data)
-            return -0.5 * (solved.square + solved.log_determinant + self.n_rows * _LOG_TWO_PI)
+            white = _White.of(self, data)
+            inner, target = white.turned(self._factor(data.scale))
+            square = (white.residual**2).sum(axis=-1)
+            # the last pivot of the factor of [[Q, t], [tᵀ, square + 1]] is what the effects leave of the square, and 1
+            bordered = np.empty((len(inner), self.n_effects + 1, self.n_effects + 1))
+            bordered[:, :-1, :-1] = inner + np.eye(self.n_effects)
+            bordered[:, :-1, -1] = bordered[:, -1, :-1] = target
+            bordered[:, -1, -1] = square + 1.0
+            factor, sound = lower_factors(bordered)
+            pivots = np.diagonal(factor, axis1=1, axis2=2)
+            determinant = white.log_determinant + 2.0 * np.log(pivots[:, :-1]).sum(axis=-1)
+            density = -0.5 * (pivots[:, -1] ** 2 - 1.0 + determinant + self.n_rows * _LOG_TWO_PI)
+            return np.where(sound, density, nan)
 
         return self._in_parts(residual, width, scales, part, -inf, ())
 
@@ -122,7 +134,7 @@ class CorrelatedScatter:
     def log_density_left_out(
         self, residual: ArrayLike, width: ArrayLike, scales: ArrayLike, block: NDArray[np.intp]
     ) -> FloatArray:
-        """Joint log-density of each block of rows given all rows outside it, shape ``(B, n_blocks)``; see :class:`CrossedGroups`."""
+        """Joint log-density of each block of rows given all others, shape ``(B, n_blocks)``; see :class:`CrossedGroups`."""
         r, joint = np.asarray(residual, dtype=float), self.log_density(residual, width, scales)
         w = np.broadcast_to(np.asarray(width, dtype=float), r.shape)
         found = np.zeros((len(joint), int(np.max(block)) + 1))
@@ -249,11 +261,17 @@ class CorrelatedScatter:
                 data.possible[:] &= data.scale[:, place + 1] < 1.0
         data.possible[:] &= (data.scale[:, lengths] > 0.0).all(axis=-1)
         scale = np.array(data.scale)
-        scale[np.ix_(~data.possible, lengths)] = 0.5  # harmless
+        scale[:, lengths] = np.where(data.possible[:, np.newaxis], scale[:, lengths], 0.5)  # harmless
         return replace(data, scale=scale)
 
     def _in_parts(
-        self, residual: ArrayLike, width: ArrayLike, scales: ArrayLike, part: object, bad: float, shape: tuple[int, ...]
+        self,
+        residual: ArrayLike,
+        width: ArrayLike,
+        scales: ArrayLike,
+        part: object,
+        bad: float,
+        shape: tuple[int, ...],
     ) -> FloatArray:
         """A function of a batch of data, in parts whose matrices fit into memory; ``bad`` for impossible input."""
         assert callable(part)
@@ -274,15 +292,62 @@ class CorrelatedScatter:
 
 
 @dataclass(frozen=True, eq=False)
+class _White:
+    """Residuals and design of a batch, whitened by the noise.
+
+    Attributes
+    ----------
+    residual : shape ``(B, N')``; N' is N, or more with a latent process
+    gram, projection : products of the whitened design with itself, ``(B, K, K)``, and with the residuals, ``(B, K)``
+    log_determinant : of the covariance of the noise, shape ``(B,)``
+    design : whitened, ``(B, N', K)``; None where each row is divided by its width
+    """
+
+    scatter: CorrelatedScatter
+    data: GroupData
+    residual: FloatArray
+    gram: FloatArray
+    projection: FloatArray
+    log_determinant: FloatArray
+    design: FloatArray | None = None
+
+    @classmethod
+    def of(cls, scatter: CorrelatedScatter, data: GroupData) -> _White:
+        log_determinant, residual = 2.0 * np.log(data.width).sum(axis=-1), data.residual / data.width
+        if scatter.noise is None:
+            projection = _times(scatter._design.T, data.weight * data.residual)
+            return cls(scatter, data, residual, _weighted_gram(scatter, data), projection, log_determinant)
+        memory = scatter.noise.at(*scatter._memory(data.scale))
+        columns = [scatter._design / data.width[:, :, np.newaxis], residual[:, :, np.newaxis]]
+        white = memory.whiten(np.concatenate(columns, axis=-1))
+        design, residual = np.ascontiguousarray(white[:, :, :-1]), np.ascontiguousarray(white[:, :, -1])
+        transposed = np.ascontiguousarray(np.swapaxes(design, 1, 2))
+        return cls(
+            scatter, data, residual, np.matmul(transposed, design), _times(transposed, residual),
+            log_determinant + memory.log_determinant(), design,
+        )  # fmt: skip
+
+    def turned(self, factor: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Gram matrix and projection for z instead of the effects F z."""
+        turned = np.swapaxes(factor, 1, 2)
+        return np.matmul(turned, np.matmul(self.gram, factor)), _times(turned, self.projection)
+
+    def less(self, effects: FloatArray) -> FloatArray:
+        """Whitened residuals less effects ``(B, K)``."""
+        if self.design is not None:
+            return self.residual - _times(self.design, effects)
+        return self.residual - self.scatter.at_rows(effects) / self.data.width
+
+
+@dataclass(frozen=True, eq=False)
 class _Solved:
-    """Posterior of the effects of a batch, and what the density of the data needs.
+    """Posterior of the effects of a batch, and what is left of the data.
 
     Attributes
     ----------
     factor : F, shape ``(B, K, K)``
     effects : posterior of z; NaN in its centre where rounding left no positive definite matrix
     left : whitened residuals less effects, shape ``(B, N')``
-    log_determinant : ln det Σ, shape ``(B,)``
     """
 
     scatter: CorrelatedScatter
@@ -290,52 +355,27 @@ class _Solved:
     factor: FloatArray
     effects: ConditionedEffects
     left: FloatArray
-    log_determinant: FloatArray
 
     @classmethod
     def of(cls, scatter: CorrelatedScatter, data: GroupData) -> _Solved:
-        design, noise = scatter._design, scatter.noise
-        factor = scatter._factor(data.scale)
-        log_determinant = 2.0 * np.log(data.width).sum(axis=-1)
-        residual = data.residual / data.width
-        if noise is None:
-            gram = _weighted_gram(scatter, data)
-            projection = _times(design.T, data.weight * data.residual)
-        else:
-            memory = noise.at(*scatter._memory(data.scale))
-            log_determinant += memory.log_determinant()
-            columns = np.concatenate(
-                [design / data.width[:, :, np.newaxis], residual[:, :, np.newaxis]], axis=-1
-            )
-            white = memory.whiten(columns)
-            design_white, residual = white[:, :, :-1], np.ascontiguousarray(white[:, :, -1])
-            transposed = np.ascontiguousarray(np.swapaxes(design_white, 1, 2))
-            gram = np.matmul(transposed, np.ascontiguousarray(design_white))
-            projection = _times(transposed, residual)
-        turned = np.ascontiguousarray(np.swapaxes(factor, 1, 2))
-        count = len(factor)
-        nothing = np.zeros((count, 0))
+        factor, white = scatter._factor(data.scale), _White.of(scatter, data)
+        inner, target = white.turned(factor)
+        count, size = target.shape
         effects = condition_effects(
-            nothing, np.zeros((count, 0, factor.shape[1])), np.matmul(turned, np.matmul(gram, factor)),
-            _times(turned, projection), np.ones(factor.shape[:2]), slice(0, 0),
-        )  # fmt: skip
+            np.zeros((count, 0)),
+            np.zeros((count, 0, size)),
+            inner,
+            target,
+            np.ones((count, size)),
+            slice(0, 0),
+        )
         effects.centre[~effects.sound] = nan
-        mean = _times(factor, effects.mean)
-        if noise is None:
-            left = residual - _times(design, mean) / data.width
-        else:
-            left = residual - _times(np.ascontiguousarray(design_white), mean)
-        return cls(scatter, data, factor, effects, left, log_determinant + effects.log_determinant)
+        return cls(scatter, data, factor, effects, white.less(_times(factor, effects.mean)))
 
     @property
     def mean(self) -> FloatArray:
         """Posterior mean of the effects, shape ``(B, K)``."""
         return _times(self.factor, self.effects.mean)
-
-    @property
-    def square(self) -> FloatArray:
-        """rᵀ Σ⁻¹ r, shape ``(B,)``."""
-        return (self.left**2).sum(axis=-1) + (self.effects.centre**2).sum(axis=-1)
 
     def force_and_precision(self) -> tuple[FloatArray, FloatArray]:
         """Σ⁻¹ r and the diagonal of Σ⁻¹, shape ``(B, N)``."""
