@@ -188,7 +188,9 @@ class CorrelatedScatter:
     def draw_new_effects(self, rng: np.random.Generator, scales: ArrayLike) -> FloatArray:
         """Effects that no data have seen, shape ``(B, K)``."""
         values = np.atleast_2d(np.asarray(scales, dtype=float))
-        return _times(self._factor(values), rng.standard_normal((len(values), self.n_effects)))
+        standard = rng.standard_normal((len(values), self.n_effects))
+        parts = [_times(self._factor(values[place]), standard[place]) for place in self._parts(len(values))]
+        return np.concatenate(parts) if parts else standard
 
     def draw_noise(self, rng: np.random.Generator, scales: ArrayLike) -> FloatArray:
         """Noise of width 1, shape ``(B, N)``."""
