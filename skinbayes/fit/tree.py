@@ -166,6 +166,14 @@ def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
         name + STANDARD_DEVIATION_SUFFIX: (("row",), spread * problem.conditions.values[name])
         for name, spread in problem.input_spread.items()
     }
+    if (
+        problem.correlated is not None
+    ):  # also columns along which rows are correlated that the forward model does not take
+        constant |= {
+            name: (("row",), values)
+            for name, values in problem.correlated.along.items()
+            if name not in constant
+        }
     groups = {
         "observed_data": xarray.Dataset(observed, coords=coordinates),
         "constant_data": xarray.Dataset(constant, coords=coordinates),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,16 +82,19 @@ class SharedScatter:
     parameters : name among the inputs of each of its scales, in their order
     axes : axis of each column of the discrepancy
     series : levels of the label column within which noise is correlated; one empty name without it
+    along : columns of curves and of correlated noise, SI, each of shape ``(N,)``; without the order of the rows
     """
 
     scatter: CorrelatedScatter
     parameters: tuple[str, ...]
     axes: tuple[Axis, ...] = ()
     series: tuple[str, ...] = ()
+    along: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def rows(self, keep: NDArray[np.bool_]) -> SharedScatter:
         """The same for some of the rows."""
-        return replace(self, scatter=self.scatter.rows(keep))
+        along = {name: values[keep] for name, values in self.along.items()}
+        return replace(self, scatter=self.scatter.rows(keep), along=along)
 
     def curves(self, effects: FloatArray, count: int) -> Iterable[tuple[Axis, FloatArray, FloatArray]]:
         """Each axis, ``count`` values of its column, and the curves there ``(B, levels, count)`` of effects ``(B, K)``."""
@@ -197,7 +200,9 @@ def shared_scatter(
             f"{spec.path}: groups, curves and drifts are {scatter.n_effects} effects together; expected at most {MOST_EFFECTS}, "
             "with which time and memory were measured: take longer curves, or the same one for all levels"
         )
-    return SharedScatter(scatter, tuple(names), axes, series)
+    used = [axis.column for axis in axes] + ([] if spec.correlation is None else [spec.correlation.along])
+    along = {name: columns[name] for name in used if name != ORDER}
+    return SharedScatter(scatter, tuple(names), axes, series, along)
 
 
 def _axes(spec: ModelSpec, rows: Conditions, columns: dict[str, FloatArray]) -> tuple[Axis, ...]:

@@ -18,6 +18,7 @@ Pinheiro & Bates, Mixed-Effects Models in S and S-PLUS, Springer (2000), doi 10.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +72,16 @@ class CorrelatedNoise:
         gap = np.where(new_series, np.inf, step)[new_state]
         return cls(x, number, independent, order, np.cumsum(new_state) - 1, gap)
 
+    @cached_property
+    def in_order(self) -> bool:
+        """Whether the rows stand in order already."""
+        return bool((np.diff(self.order) == 1).all())
+
+    @cached_property
+    def starts(self) -> NDArray[np.intp]:
+        """First of the sorted rows of each different value of the column."""
+        return np.flatnonzero(np.diff(self.state, prepend=-1))
+
     @property
     def n_series(self) -> int:
         """Number of series."""
@@ -87,49 +98,70 @@ class CorrelatedNoise:
 
     def at(self, length: FloatArray, fraction: FloatArray) -> _Memory:
         """The noise of a batch: ``length`` > 0 and ``fraction`` between 0 and 1, of shape ``(B,)``."""
-        exponent = self.gap / length[:, np.newaxis]
-        return _Memory(self, np.exp(-exponent), -np.expm1(-2.0 * exponent), fraction)
+        gaps, place, counts = self._steps
+        exponent = gaps / length[:, np.newaxis]
+        innovation = -np.expm1(-2.0 * exponent)
+        memory, narrowed = np.exp(-exponent), 1.0 / np.sqrt(innovation)
+        log_innovations = (counts * np.log(innovation)).sum(axis=-1)
+        at_rows = (np.take(values, place, axis=1) for values in (memory, narrowed))
+        return _Memory(self, *at_rows, log_innovations, fraction)
+
+    @cached_property
+    def _steps(self) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.intp]]:
+        """Different gaps, which of them each value has, and how often each occurs: a series often has equal steps."""
+        finite = self.gap[np.isfinite(self.gap)]
+        typical = float(np.median(finite)) if finite.size else 1.0
+        different, place, counts = np.unique(
+            np.round(self.gap / typical, 12), return_inverse=True, return_counts=True
+        )
+        return different * typical, place.astype(np.intp), counts
 
 
 @dataclass(frozen=True, eq=False)
 class _Memory:
-    """The correlation matrix C of a batch; ``memory`` and ``innovation`` (variances) of each value, shape ``(B, S)``."""
+    """The correlation matrix C of a batch.
+
+    Attributes
+    ----------
+    memory : of each value of the one before, shape ``(B, S)``
+    narrowed : one over the standard deviation of what is new in each, shape ``(B, S)``
+    log_innovations : sum of ln of its variances, shape ``(B,)``
+    fraction : independent fraction, shape ``(B,)``
+    """
 
     noise: CorrelatedNoise
     memory: FloatArray
-    innovation: FloatArray
+    narrowed: FloatArray
+    log_innovations: FloatArray
     fraction: FloatArray
 
-    def whiten(self, columns: FloatArray) -> FloatArray:
-        """Numbers whose inner products are those of columns ``(B, N, K)`` with the inverse of C; ``(B, N or N + S, K)``."""
-        sorted_rows = np.take(columns, self.noise.order, axis=1)
+    def whiten(self, rows: FloatArray) -> FloatArray:
+        """Numbers whose inner products are those of rows ``(B, K, N)`` with the inverse of C; ``(B, K, N or N + S)``."""
+        sorted_rows = self._sorted(rows)
         if not self.noise.independent:
             return self._innovations(sorted_rows)
         left, latent = self._split(sorted_rows)
         left /= np.sqrt(self.fraction)[:, np.newaxis, np.newaxis]
-        return np.concatenate([left, self._innovations(latent)], axis=1)
+        return np.concatenate([left, self._innovations(latent)], axis=-1)
 
-    def solve(self, columns: FloatArray) -> FloatArray:
-        """The inverse of C times columns, shape ``(B, N, K)``."""
-        sorted_rows = np.take(columns, self.noise.order, axis=1)
+    def solve(self, rows: FloatArray) -> FloatArray:
+        """The inverse of C times each of ``rows`` of shape ``(B, K, N)``, same shape."""
+        sorted_rows = self._sorted(rows)
         if self.noise.independent:
             solved = self._split(sorted_rows)[0] / self.fraction[:, np.newaxis, np.newaxis]
         else:
-            whitened = self._innovations(sorted_rows) / np.sqrt(self.innovation)[:, :, np.newaxis]
+            whitened = self._innovations(sorted_rows) * self.narrowed[:, np.newaxis]
             solved = whitened.copy()
-            solved[:, :-1] -= self.memory[:, 1:, np.newaxis] * whitened[:, 1:]
-        found = np.empty_like(solved)
-        found[:, self.noise.order] = solved
-        return found
+            solved[..., :-1] -= self.memory[:, np.newaxis, 1:] * whitened[..., 1:]
+        return self._unsorted(solved)
 
     def log_determinant(self) -> FloatArray:
         """ln det C, shape ``(B,)``."""
-        found = np.log(self.innovation).sum(axis=-1)
         if not self.noise.independent:
-            return np.asarray(found)
+            return self.log_innovations
         pivots = np.stack([np.asarray(dpttrf(*matrix)[0]) for matrix in self._posterior_precisions()])
         count = len(self.noise.order)
-        return np.asarray(found + np.log(pivots).sum(axis=-1) + count * np.log(self.fraction))
+        return np.asarray(self.log_innovations + np.log(pivots).sum(axis=-1) + count * np.log(self.fraction))
 
     def diagonal(self) -> FloatArray:
         """Diagonal of the inverse of C, shape ``(B, N)``."""
@@ -140,36 +172,44 @@ class _Memory:
             values = np.take(known, self.noise.state, axis=1)
         else:
             values = self._precision()[0]
-        found = np.empty_like(values)
-        found[:, self.noise.order] = values
-        return found
+        return self._unsorted(values)
 
     def draw(self, rng: np.random.Generator) -> FloatArray:
         """Noise of width 1, shape ``(B, N)``."""
-        u = rng.standard_normal(self.memory.shape) * np.sqrt(self.innovation)
+        u = rng.standard_normal(self.memory.shape) / self.narrowed
         for i in range(1, u.shape[1]):
             u[:, i] += self.memory[:, i] * u[:, i - 1]
         values = np.take(u, self.noise.state, axis=1)
         if self.noise.independent:
             own = np.sqrt(self.fraction)[:, np.newaxis] * rng.standard_normal(values.shape)
             values = np.sqrt(1.0 - self.fraction)[:, np.newaxis] * values + own
-        found = np.empty_like(values)
-        found[:, self.noise.order] = values
-        return found
+        return self._unsorted(values)
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 
+    def _sorted(self, rows: FloatArray) -> FloatArray:
+        return rows if self.noise.in_order else np.take(rows, self.noise.order, axis=-1)
+
+    def _unsorted(self, values: FloatArray) -> FloatArray:
+        if self.noise.in_order:
+            return values
+        found = np.empty_like(values)
+        found[..., self.noise.order] = values
+        return found
+
     def _innovations(self, values: FloatArray) -> FloatArray:
-        """What is new in each value of the process, with width 1; shape ``(B, S, K)`` as the values."""
-        found = values.copy()
-        found[:, 1:] -= self.memory[:, 1:, np.newaxis] * values[:, :-1]
-        found /= np.sqrt(self.innovation)[:, :, np.newaxis]
+        """What is new in each value of the process, with width 1; shape ``(B, K, S)`` as the values."""
+        found = np.empty_like(values)
+        found[..., 0] = values[..., 0]
+        np.multiply(self.memory[:, np.newaxis, 1:], values[..., :-1], out=found[..., 1:])
+        np.subtract(values[..., 1:], found[..., 1:], out=found[..., 1:])
+        found *= self.narrowed[:, np.newaxis]
         return found
 
     def _precision(self) -> tuple[FloatArray, FloatArray]:
         """Diagonal ``(B, S)`` and off-diagonal ``(B, S − 1)`` of the inverse of the covariance of the process."""
-        coupling = self.memory[:, 1:] / self.innovation[:, 1:]
-        diagonal = 1.0 / self.innovation
+        coupling = self.memory[:, 1:] * self.narrowed[:, 1:] ** 2
+        diagonal = self.narrowed**2
         diagonal[:, :-1] += self.memory[:, 1:] * coupling
         return diagonal, -coupling
 
@@ -181,15 +221,16 @@ class _Memory:
         return list(zip(diagonal, coupling, strict=True))
 
     def _split(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Values of sorted rows as independent part ``(B, N, K)`` and process ``(B, S, K)``, each at its posterior mean."""
-        starts = np.flatnonzero(np.diff(self.noise.state, prepend=-1))
+        """Values of sorted rows as independent part ``(B, K, N)`` and process ``(B, K, S)``, each at its posterior mean."""
         root = np.sqrt(1.0 - self.fraction)[:, np.newaxis, np.newaxis]
-        sums = np.add.reduceat(values, starts, axis=1) * (root / self.fraction[:, np.newaxis, np.newaxis])
+        repeated, state = len(self.noise.gap) < len(self.noise.state), self.noise.state
+        sums = np.add.reduceat(values, self.noise.starts, axis=-1) if repeated else values
+        sums = sums * (root / self.fraction[:, np.newaxis, np.newaxis])
         process = np.empty_like(sums)
         for i, (diagonal, coupling) in enumerate(self._posterior_precisions()):
             pivots, factors, _ = dpttrf(diagonal, coupling)
-            process[i] = dpttrs(pivots, factors, sums[i])[0]
-        return values - root * np.take(process, self.noise.state, axis=1), process
+            process[i] = dpttrs(pivots, factors, sums[i].T)[0].T
+        return values - root * (np.take(process, state, axis=-1) if repeated else process), process
 
 
 def _diagonal_of_inverse(diagonal: FloatArray, coupling: FloatArray) -> FloatArray:

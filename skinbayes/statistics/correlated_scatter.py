@@ -31,8 +31,8 @@ from skinbayes.statistics.smooth_curves import SmoothCurves
 
 _LOG_TWO_PI = log(2.0 * pi)
 
-_PART = 1_000_000
-"""Numbers that are worked on at once."""
+_PART = 100_000
+"""Numbers that are worked on at once; more than fit into the cache take longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,6 +221,17 @@ class CorrelatedScatter:
         return np.ascontiguousarray(np.concatenate([np.zeros((self.n_rows, 0)), *blocks], axis=1))
 
     @cached_property
+    def _transposed(self) -> FloatArray:
+        return np.ascontiguousarray(self._design.T)
+
+    def _columns(self, last: FloatArray, width: FloatArray) -> FloatArray:
+        """Columns of the design over the width of each row, and one more of these, shape ``(B, K + 1, N)``."""
+        found = np.empty((len(last), self.n_effects + 1, self.n_rows))
+        np.divide(self._transposed, width[:, np.newaxis], out=found[:, :-1])
+        found[:, -1] = last
+        return found
+
+    @cached_property
     def _gram(self) -> FloatArray:
         return self._design.T @ self._design
 
@@ -288,7 +299,8 @@ class CorrelatedScatter:
         return found
 
     def _parts(self, count: int) -> Iterator[slice]:
-        step = max(1, min(128, _PART // (self.n_rows * (self.n_effects + 1))))
+        columns = 2 if self.noise is None else self.n_effects + 1
+        step = max(1, min(128, _PART // (self.n_rows * columns + self.n_effects**2)))
         for start in range(0, count, step):
             yield slice(start, start + step)
 
@@ -302,7 +314,7 @@ class _White:
     residual : shape ``(B, N')``; N' is N, or more with a latent process
     gram, projection : products of the whitened design with itself, ``(B, K, K)``, and with the residuals, ``(B, K)``
     log_determinant : of the covariance of the noise, shape ``(B,)``
-    design : whitened, ``(B, N', K)``; None where each row is divided by its width
+    design : whitened, ``(B, K, N')``; None where each row is divided by its width
     """
 
     scatter: CorrelatedScatter
@@ -320,14 +332,11 @@ class _White:
             projection = _times(scatter._design.T, data.weight * data.residual)
             return cls(scatter, data, residual, _weighted_gram(scatter, data), projection, log_determinant)
         memory = scatter.noise.at(*scatter._memory(data.scale))
-        columns = [scatter._design / data.width[:, :, np.newaxis], residual[:, :, np.newaxis]]
-        white = memory.whiten(np.concatenate(columns, axis=-1))
-        design, residual = np.ascontiguousarray(white[:, :, :-1]), np.ascontiguousarray(white[:, :, -1])
-        transposed = np.ascontiguousarray(np.swapaxes(design, 1, 2))
-        return cls(
-            scatter, data, residual, np.matmul(transposed, design), _times(transposed, residual),
-            log_determinant + memory.log_determinant(), design,
-        )  # fmt: skip
+        white = memory.whiten(scatter._columns(residual, data.width))
+        design, residual = white[:, :-1], white[:, -1]
+        gram, projection = np.matmul(design, np.swapaxes(design, 1, 2)), _times(design, residual)
+        log_determinant += memory.log_determinant()
+        return cls(scatter, data, residual, gram, projection, log_determinant, design)
 
     def turned(self, factor: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Gram matrix and projection for z instead of the effects F z."""
@@ -337,7 +346,7 @@ class _White:
     def less(self, effects: FloatArray) -> FloatArray:
         """Whitened residuals less effects ``(B, K)``."""
         if self.design is not None:
-            return self.residual - _times(self.design, effects)
+            return self.residual - np.matmul(effects[:, np.newaxis], self.design)[:, 0]
         return self.residual - self.scatter.at_rows(effects) / self.data.width
 
 
@@ -383,13 +392,14 @@ class _Solved:
         """Σ⁻¹ r and the diagonal of Σ⁻¹, shape ``(B, N)``."""
         design, width = self.scatter._design, self.data.width
         rest = (self.data.residual - _times(design, self.mean)) / width
-        columns = np.concatenate([design / width[:, :, np.newaxis], rest[:, :, np.newaxis]], axis=-1)
+        columns = self.scatter._columns(rest, width)
         own: FloatArray | float = 1.0
         if self.scatter.noise is not None:
             memory = self.scatter.noise.at(*self.scatter._memory(self.data.scale))
             columns, own = memory.solve(columns), memory.diagonal()
-        reach = np.matmul(columns[:, :, :-1], np.matmul(self.factor, np.swapaxes(self.effects.root(), 1, 2)))
-        return columns[:, :, -1] / width, (own - (reach**2).sum(axis=-1)) / width**2
+        root = np.matmul(self.effects.root(), np.swapaxes(self.factor, 1, 2))
+        reach = np.matmul(np.ascontiguousarray(root), columns[:, :-1])
+        return columns[:, -1] / width, (own - (reach**2).sum(axis=1)) / width**2
 
 
 def _weighted_gram(scatter: CorrelatedScatter, data: GroupData) -> FloatArray:

@@ -49,6 +49,8 @@ SECTION_OF = {
     modelschema.DerivedBlock: "`[derived.NAME]`",
     modelschema.GridBlock: "`[conditions]`",
     modelschema.GroupBlock: "`[groups.COLUMN]`",
+    modelschema.DiscrepancyBlock: "`[discrepancy]`",
+    modelschema.CorrelationBlock: "`[noise.correlation]`",
     modelschema.CovariateBlock: "`[covariates.NAME]`",
     modelschema.RheologyBlock: "`[rheology]`",
 }
@@ -74,7 +76,7 @@ def test_priors() -> None:
 
 
 def test_noise() -> None:
-    assert sorted(names("`[noise]`")) == sorted(["family", *noise_parameter_names()])
+    assert sorted(names("`[noise]`")) == sorted(["family", "correlation", *noise_parameter_names()])
     rows = first_column("`[noise]`", 1)
     assert [row[0].strip("`") for row in rows] == list(NOISE_FAMILIES)
     for name, _, _, unit in rows:
