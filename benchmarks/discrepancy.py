@@ -1,7 +1,8 @@
-"""Log-density of rows that are not independent: a smooth discrepancy of 2000 rows, correlated noise of 20 000, beside the physics.
+"""Log-density of rows that are not independent: a smooth curve over 2000 rows, correlated noise of 20 000, beside the physics.
 
 Run with ``python benchmarks/discrepancy.py [--json]``. Times are CPU time for one vector of a batch of 32, least of five.
-The physics is the friction of an elastomer at so many different loads. Errors are against dense normal distributions, with 400 of the rows.
+The physics is the friction of an elastomer at so many different loads. Errors are against
+dense normal distributions, of 400 rows.
 """
 
 from __future__ import annotations

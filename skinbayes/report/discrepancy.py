@@ -90,8 +90,8 @@ def _said(fit: Fit, finding: DiscrepancyFinding) -> str:
     along = spoken_name(finding.column)
     low, middle, high = finding.largest
     said = (
-        f"Along {along}: the theory misses up to {_size(fit, middle)} (90 %: {_size(fit, low)} to {_size(fit, high)}). Predictions "
-        "contain this curve, and intervals of the parameters know that it is unknown."
+        f"Along {along}: the theory misses up to {_size(fit, middle)} (90 %: {_size(fit, low)} to {_size(fit, high)}). "
+        "Predictions contain this curve, and intervals of the parameters know that it is unknown."
     )
     if finding.ratio is None:
         return said
@@ -151,6 +151,6 @@ def _correlation(fit: Fit) -> list[str]:
     where = "the order of the rows" if along.along == "order" else spoken_name(along.along)
     return [
         f"Memory of the noise: its correlation along {where} falls to 1/e over {quantity(middle, unit)} (90 %: "
-        f"{interval(low, high, unit, typical=middle)}), that of neighbouring rows is {memory:.2f}. For a mean, {rows} such rows tell "
-        f"about as much as {max(1, round(rows * (1 - memory) / (1 + memory)))} independent ones."
+        f"{interval(low, high, unit, typical=middle)}), that of neighbouring rows is {memory:.2f}. For a mean, {rows} such rows "
+        f"tell about as much as {max(1, round(rows * (1 - memory) / (1 + memory)))} independent ones."
     ]
