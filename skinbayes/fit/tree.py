@@ -55,10 +55,10 @@ def posterior_groups(
     -------
     dict
         ``posterior`` (parameters, derived quantities, effects of groups), ``sample_stats``, ``posterior_predictive``,
-        ``log_likelihood`` (pointwise), ``log_likelihood_left_out`` (by levels of grouping columns), ``discrepancy`` (curves that
-        the theory misses, and drifts) and ``validity`` (share of the draws in which a row is at the edge of the theory); with more
-        than 400 rows ``derived_by_row``. What differs by row
-        is kept of evenly spaced draws, as many as `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
+        ``log_likelihood`` (pointwise), ``log_likelihood_left_out`` (by levels of grouping columns), ``discrepancy`` (curves
+        that the theory misses, and drifts) and ``validity`` (share of the draws in which a row is at the edge of the theory);
+        with more than 400 rows ``derived_by_row``. What differs by row is kept of evenly spaced draws, as many as
+        `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
     """
     effects = None if problem.shared is None else _at(draws, lambda theta: problem.draw_effects(theta, rng))
     step = _thinning(problem, draws)
@@ -99,7 +99,7 @@ def _discrepancy(
     flat = effects.reshape(-1, effects.shape[-1])
     for axis, values, curves in shared.curves(flat, CURVE_POINTS):
         level = [f"{axis.within}_level"] if axis.within else []
-        coordinates |= {f"{axis.column}_point": values} | dict.fromkeys(level, list(axis.levels))
+        coordinates |= {f"{axis.column}_point": values} | {name: list(axis.levels) for name in level}
         shape = (*draws.shape[:2], *((len(axis.levels),) if level else ()), CURVE_POINTS)
         dimensions = ("chain", "draw", *level, f"{axis.column}_point")
         variables[f"discrepancy_along_{axis.column}"] = (dimensions, curves.reshape(shape))

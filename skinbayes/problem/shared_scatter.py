@@ -201,8 +201,8 @@ def shared_scatter(
             "with which time and memory were measured: take longer curves, or the same one for all levels"
         )
     used = [axis.column for axis in axes] + ([] if spec.correlation is None else [spec.correlation.along])
-    along = {name: columns[name] for name in used if name != ORDER}
-    return SharedScatter(scatter, tuple(names), axes, series, along)
+    given = {name: columns[name] for name in used if name != ORDER}
+    return SharedScatter(scatter, tuple(names), axes, series, given)
 
 
 def _axes(spec: ModelSpec, rows: Conditions, columns: dict[str, FloatArray]) -> tuple[Axis, ...]:
@@ -249,8 +249,8 @@ def _check_length(spec: ModelSpec, length: ParameterSpec, spacing: float) -> Non
         raise InputError(
             f"{spec.path}: discrepancy.length: {'the value is' if low == high else '98 % of the prior lie between'} {low:.3g}"
             f"{'' if low == high else f' and {high:.3g}'}; expected at least {spacing:.3g}, the mean spacing of the data, below "
-            f"which a curve cannot be told from noise, and at most {LONGEST:g}, beyond which it is a constant. It is a fraction of "
-            "the range of the column"
+            f"which a curve cannot be told from noise, and at most {LONGEST:g}, beyond which it is a constant. It is a fraction "
+            "of the range of the column"
         )
 
 

@@ -103,8 +103,8 @@ class CorrelatedNoise:
         innovation = -np.expm1(-2.0 * exponent)
         memory, narrowed = np.exp(-exponent), 1.0 / np.sqrt(innovation)
         log_innovations = (counts * np.log(innovation)).sum(axis=-1)
-        at_rows = (np.take(values, place, axis=1) for values in (memory, narrowed))
-        return _Memory(self, *at_rows, log_innovations, fraction)
+        memory, narrowed = np.take(memory, place, axis=1), np.take(narrowed, place, axis=1)
+        return _Memory(self, memory, narrowed, log_innovations, fraction)
 
     @cached_property
     def _steps(self) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.intp]]:

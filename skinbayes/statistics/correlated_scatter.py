@@ -23,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
-from skinbayes.statistics._group_algebra import ConditionedEffects, condition_effects, lower_factors
+from skinbayes.statistics._correlated_algebra import Solved, White, times
+from skinbayes.statistics._group_algebra import lower_factors
 from skinbayes.statistics._group_input import GroupData, group_data
 from skinbayes.statistics.correlated_noise import CorrelatedNoise
 from skinbayes.statistics.groups import CrossedGroups
@@ -105,7 +106,7 @@ class CorrelatedScatter:
         """Joint log-density of all rows, everything shared integrated out, shape ``(B,)``; −inf for impossible input."""
 
         def part(data: GroupData) -> FloatArray:
-            white = _White.of(self, data)
+            white = White.of(self, data)
             inner, target = white.turned(self._factor(data.scale))
             square = (white.residual**2).sum(axis=-1)
             # the last pivot of the factor of [[Q, t], [tᵀ, square + 1]] is what the effects leave of the square, and 1
@@ -125,7 +126,7 @@ class CorrelatedScatter:
         """Log-density of each row given all the others, shape ``(B, N)``; see :class:`CrossedGroups`."""
 
         def part(data: GroupData) -> FloatArray:
-            solved = _Solved.of(self, data)
+            solved = Solved.of(self, data)
             force, precision = solved.force_and_precision()
             return 0.5 * (np.log(precision) - force**2 / precision - _LOG_TWO_PI)
 
@@ -151,10 +152,10 @@ class CorrelatedScatter:
         """Posterior of all effects given the data: mean ``(B, K)`` and covariance ``(B, K, K)``; NaN for impossible input."""
 
         def mean(data: GroupData) -> FloatArray:
-            return _Solved.of(self, data).mean
+            return Solved.of(self, data).mean
 
         def covariance(data: GroupData) -> FloatArray:
-            solved = _Solved.of(self, data)
+            solved = Solved.of(self, data)
             return solved.factor @ solved.effects.covariance() @ np.swapaxes(solved.factor, 1, 2)
 
         size = self.n_effects
@@ -167,7 +168,7 @@ class CorrelatedScatter:
         """Residuals as numbers that scatter independently with width 1, shape ``(B, ·)``: R Rᵀ = r Σ⁻¹ rᵀ."""
         data = self._data(residual, width, scales)
         with np.errstate(all="ignore"):
-            solved = _Solved.of(self, data)
+            solved = Solved.of(self, data)
             found = np.concatenate([solved.left, solved.effects.centre], axis=-1)
         found[~(data.possible & solved.effects.sound)] = nan
         return found
@@ -179,9 +180,9 @@ class CorrelatedScatter:
         standard = iter(rng.standard_normal((len(np.asarray(residual)), self.n_effects)))
 
         def part(data: GroupData) -> FloatArray:
-            solved = _Solved.of(self, data)
+            solved = Solved.of(self, data)
             own = np.array([next(standard) for _ in range(len(data.residual))]).reshape(-1, self.n_effects)
-            return _times(solved.factor, solved.effects.draw(own))
+            return times(solved.factor, solved.effects.draw(own))
 
         return self._in_parts(residual, width, scales, part, nan, (self.n_effects,))
 
@@ -189,7 +190,7 @@ class CorrelatedScatter:
         """Effects that no data have seen, shape ``(B, K)``."""
         values = np.atleast_2d(np.asarray(scales, dtype=float))
         standard = rng.standard_normal((len(values), self.n_effects))
-        parts = [_times(self._factor(values[place]), standard[place]) for place in self._parts(len(values))]
+        parts = [times(self._factor(values[place]), standard[place]) for place in self._parts(len(values))]
         return np.concatenate(parts) if parts else standard
 
     def draw_noise(self, rng: np.random.Generator, scales: ArrayLike) -> FloatArray:
@@ -201,7 +202,7 @@ class CorrelatedScatter:
 
     def at_rows(self, effects: ArrayLike) -> FloatArray:
         """What the effects ``(B, K)`` add to each row, shape ``(B, N)``."""
-        return _times(self._design, np.asarray(effects, dtype=float))
+        return times(self._design, np.asarray(effects, dtype=float))
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 
@@ -303,116 +304,3 @@ class CorrelatedScatter:
         step = max(1, min(128, _PART // (self.n_rows * columns + self.n_effects**2)))
         for start in range(0, count, step):
             yield slice(start, start + step)
-
-
-@dataclass(frozen=True, eq=False)
-class _White:
-    """Residuals and design of a batch, whitened by the noise.
-
-    Attributes
-    ----------
-    residual : shape ``(B, N')``; N' is N, or more with a latent process
-    gram, projection : products of the whitened design with itself, ``(B, K, K)``, and with the residuals, ``(B, K)``
-    log_determinant : of the covariance of the noise, shape ``(B,)``
-    design : whitened, ``(B, K, N')``; None where each row is divided by its width
-    """
-
-    scatter: CorrelatedScatter
-    data: GroupData
-    residual: FloatArray
-    gram: FloatArray
-    projection: FloatArray
-    log_determinant: FloatArray
-    design: FloatArray | None = None
-
-    @classmethod
-    def of(cls, scatter: CorrelatedScatter, data: GroupData) -> _White:
-        log_determinant, residual = 2.0 * np.log(data.width).sum(axis=-1), data.residual / data.width
-        if scatter.noise is None:
-            projection = _times(scatter._design.T, data.weight * data.residual)
-            return cls(scatter, data, residual, _weighted_gram(scatter, data), projection, log_determinant)
-        memory = scatter.noise.at(*scatter._memory(data.scale))
-        white = memory.whiten(scatter._columns(residual, data.width))
-        design, residual = white[:, :-1], white[:, -1]
-        gram, projection = np.matmul(design, np.swapaxes(design, 1, 2)), _times(design, residual)
-        log_determinant += memory.log_determinant()
-        return cls(scatter, data, residual, gram, projection, log_determinant, design)
-
-    def turned(self, factor: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gram matrix and projection for z instead of the effects F z."""
-        turned = np.swapaxes(factor, 1, 2)
-        return np.matmul(turned, np.matmul(self.gram, factor)), _times(turned, self.projection)
-
-    def less(self, effects: FloatArray) -> FloatArray:
-        """Whitened residuals less effects ``(B, K)``."""
-        if self.design is not None:
-            return self.residual - np.matmul(effects[:, np.newaxis], self.design)[:, 0]
-        return self.residual - self.scatter.at_rows(effects) / self.data.width
-
-
-@dataclass(frozen=True, eq=False)
-class _Solved:
-    """Posterior of the effects of a batch, and what is left of the data.
-
-    Attributes
-    ----------
-    factor : F, shape ``(B, K, K)``
-    effects : posterior of z; NaN in its centre where rounding left no positive definite matrix
-    left : whitened residuals less effects, shape ``(B, N')``
-    """
-
-    scatter: CorrelatedScatter
-    data: GroupData
-    factor: FloatArray
-    effects: ConditionedEffects
-    left: FloatArray
-
-    @classmethod
-    def of(cls, scatter: CorrelatedScatter, data: GroupData) -> _Solved:
-        factor, white = scatter._factor(data.scale), _White.of(scatter, data)
-        inner, target = white.turned(factor)
-        count, size = target.shape
-        effects = condition_effects(
-            np.zeros((count, 0)),
-            np.zeros((count, 0, size)),
-            inner,
-            target,
-            np.ones((count, size)),
-            slice(0, 0),
-        )
-        effects.centre[~effects.sound] = nan
-        return cls(scatter, data, factor, effects, white.less(_times(factor, effects.mean)))
-
-    @property
-    def mean(self) -> FloatArray:
-        """Posterior mean of the effects, shape ``(B, K)``."""
-        return _times(self.factor, self.effects.mean)
-
-    def force_and_precision(self) -> tuple[FloatArray, FloatArray]:
-        """Σ⁻¹ r and the diagonal of Σ⁻¹, shape ``(B, N)``."""
-        design, width = self.scatter._design, self.data.width
-        rest = (self.data.residual - _times(design, self.mean)) / width
-        columns = self.scatter._columns(rest, width)
-        own: FloatArray | float = 1.0
-        if self.scatter.noise is not None:
-            memory = self.scatter.noise.at(*self.scatter._memory(self.data.scale))
-            columns, own = memory.solve(columns), memory.diagonal()
-        root = np.matmul(self.effects.root(), np.swapaxes(self.factor, 1, 2))
-        reach = np.matmul(np.ascontiguousarray(root), columns[:, :-1])
-        return columns[:, -1] / width, (own - (reach**2).sum(axis=1)) / width**2
-
-
-def _weighted_gram(scatter: CorrelatedScatter, data: GroupData) -> FloatArray:
-    """Xᵀ W⁻¹ X, shape ``(B, K, K)``; known beforehand for vectors whose rows are all as wide."""
-    weight, design = data.weight, scatter._design
-    alike = (weight == weight[:, :1]).all(axis=-1)
-    found = np.empty((len(weight), design.shape[1], design.shape[1]))
-    found[alike] = weight[alike, :1, np.newaxis] * scatter._gram
-    for i in np.flatnonzero(~alike):
-        found[i] = design.T @ (weight[i][:, np.newaxis] * design)
-    return found
-
-
-def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Each matrix of a stack, or one matrix, times each vector."""
-    return np.matmul(matrices, np.ascontiguousarray(vectors)[:, :, np.newaxis])[:, :, 0]

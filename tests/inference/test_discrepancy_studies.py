@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from misfit_studies import SIMULATIONS, series_levels, sweep_levels
 from scipy import stats
