@@ -129,8 +129,8 @@ def _predictive(fit: Fit) -> Drawing:
 DISCREPANCY = Drawing(
     "discrepancy", plot_discrepancy, "What the theory misses",
     "Smooth curves by which the data differ from the theory, with their ranges.",
-    "The line is the median of what the theory misses, bands hold half and 90 % of the posterior. Its shape counts: a height that "
-    "all of the curve shares cannot be told from the parameters, and is what makes the bands wide.",
+    "The line is the median of what the theory misses, bands hold half and 90 % of the posterior. Its shape counts: a height "
+    "that all of the curve shares cannot be told from the parameters, and is what makes the bands wide.",
 )  # fmt: skip
 
 
