@@ -4,16 +4,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import nan
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.statistics._group_algebra import ConditionedEffects, condition_effects
 from skinbayes.statistics._group_input import GroupData
+from skinbayes.statistics.correlated_noise import CorrelatedNoise
 
-if TYPE_CHECKING:
-    from skinbayes.statistics.correlated_scatter import CorrelatedScatter
+
+class Shared(Protocol):
+    """What of correlated scatter its algebra needs; see :class:`skinbayes.statistics.correlated_scatter.CorrelatedScatter`."""
+
+    @property
+    def noise(self) -> CorrelatedNoise | None: ...
+    @property
+    def _design(self) -> FloatArray: ...
+    @property
+    def _gram(self) -> FloatArray: ...
+    def _memory(self, scales: FloatArray) -> tuple[FloatArray, FloatArray]: ...
+    def _factor(self, scales: FloatArray) -> FloatArray: ...
+    def _columns(self, last: FloatArray, width: FloatArray) -> FloatArray: ...
+    def at_rows(self, effects: ArrayLike) -> FloatArray: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +41,7 @@ class White:
     design : whitened, ``(B, K, N')``; None where each row is divided by its width
     """
 
-    scatter: CorrelatedScatter
+    scatter: Shared
     data: GroupData
     residual: FloatArray
     gram: FloatArray
@@ -37,7 +50,7 @@ class White:
     design: FloatArray | None = None
 
     @classmethod
-    def of(cls, scatter: CorrelatedScatter, data: GroupData) -> White:
+    def of(cls, scatter: Shared, data: GroupData) -> White:
         log_determinant, residual = 2.0 * np.log(data.width).sum(axis=-1), data.residual / data.width
         if scatter.noise is None:
             projection = times(scatter._design.T, data.weight * data.residual)
@@ -72,14 +85,14 @@ class Solved:
     left : whitened residuals less effects, shape ``(B, N')``
     """
 
-    scatter: CorrelatedScatter
+    scatter: Shared
     data: GroupData
     factor: FloatArray
     effects: ConditionedEffects
     left: FloatArray
 
     @classmethod
-    def of(cls, scatter: CorrelatedScatter, data: GroupData) -> Solved:
+    def of(cls, scatter: Shared, data: GroupData) -> Solved:
         factor, white = scatter._factor(data.scale), White.of(scatter, data)
         inner, target = white.turned(factor)
         count, size = target.shape
@@ -113,7 +126,7 @@ class Solved:
         return columns[:, -1] / width, (own - (reach**2).sum(axis=1)) / width**2
 
 
-def _weighted_gram(scatter: CorrelatedScatter, data: GroupData) -> FloatArray:
+def _weighted_gram(scatter: Shared, data: GroupData) -> FloatArray:
     """Xᵀ W⁻¹ X, shape ``(B, K, K)``; known beforehand for vectors whose rows are all as wide."""
     weight, design = data.weight, scatter._design
     alike = (weight == weight[:, :1]).all(axis=-1)
