@@ -184,6 +184,33 @@ _ALL = (
         "standard deviation of effects that groups of data share, of ln if the noise is logarithmic",
     ),
     Quantity("covariate_exponent", "k", "1", "power with which a column of the data acts", lower=-inf),
+    # what rows along a column share
+    _closed(
+        "discrepancy_size",
+        "s_δ",
+        "1",
+        "standard deviation of the smooth curve that the theory misses, of ln if the noise is logarithmic",
+    ),
+    Quantity(
+        "discrepancy_length", "l_δ", "1", "length of that curve as a fraction of the range of the column"
+    ),
+    Quantity(
+        "correlation_length", "l_c", "1", "distance over which the correlation of the noise falls to 1/e"
+    ),
+    Quantity(
+        "independent_fraction",
+        "f_i",
+        "1",
+        "fraction of the variance of correlated noise that is independent from row to row",
+        upper=1.0,
+        upper_open=True,
+    ),
+    _closed(
+        "drift_scale",
+        "s_d",
+        "1",
+        "standard deviation of a linear drift over the longest series, of ln if the noise is logarithmic",
+    ),
     # noise and discrepancy
     _closed("noise_scale", "σ_noise", "1", "scale of the scatter about the forward model"),
     Quantity("degrees_of_freedom", "ν_t", "1", "degrees of freedom of Student's t"),

@@ -54,35 +54,45 @@ def read_groups(
     for column, block in blocks.items():
         place = where("groups", column)
         label_column(column, place)
-        if not noise:
-            raise InputError(
-                f"{place}: a model without data has no groups; leave them out, or add [data] and [noise]"
-            )
-        if len(noise) > 1:
-            raise InputError(
-                f"{place}: group effects need a model of one observable; this one has {', '.join(noise)}"
-            )
-        family = next(iter(noise.values()))
-        if not NOISE_FAMILIES[family].closed_form_groups:
-            usable = [name for name, kind in NOISE_FAMILIES.items() if kind.closed_form_groups]
-            raise InputError(
-                f"{place}: group effects are integrated out in closed form, which noise '{family}' does not allow; expected "
-                f"{' or '.join(usable)}"
-            )
-        unit = "1" if NOISE_FAMILIES[family].logarithmic else QUANTITIES[next(iter(noise))].unit
+        family, unit = closed_form_noise(noise, place, "group effects")
         spec = parse_parameter(
             QUANTITIES["group_scale"], block.scale, where("groups", column, "scale"), unit, GROUP, column
         )
-        if NOISE_FAMILIES[family].logarithmic and spec.prior is not None:
-            far = float(spec.prior.quantile(0.999))
-            if not far <= LARGEST_SCALE:
-                raise InputError(
-                    f"{where('groups', column, 'scale')}: the prior reaches to {far:.3g} (99.9 %), a factor of "
-                    f"{'many' if far > 20 else f'{2.718281828**far:.0f}'} between groups; such an effect can swallow any misfit. "
-                    f"Expected at most {LARGEST_SCALE:g}, such as {{ half_normal = 0.5 }} or {{ uniform = [0, 1] }}"
-                )
+        if NOISE_FAMILIES[family].logarithmic:
+            scale_that_swallows(spec, where("groups", column, "scale"), "between groups")
         found.append(spec)
     return tuple(found)
+
+
+def closed_form_noise(noise: Mapping[str, str], place: str, what: str) -> tuple[str, str]:
+    """Family of the noise and unit in which it scatters, where normal effects can be integrated out.
+
+    Raises :class:`InputError` for a model without data, of several observables, or with noise of another kind.
+    """
+    verb = "needs" if what.startswith(("a ", "corr")) else "need"
+    if not noise:
+        raise InputError(f"{place}: {what} {verb} data; leave it out, or add [data] and [noise]")
+    if len(noise) > 1:
+        raise InputError(f"{place}: {what} {verb} a model of one observable; this one has {', '.join(noise)}")
+    ((observable, family),) = noise.items()
+    if not NOISE_FAMILIES[family].closed_form_groups:
+        usable = [name for name, kind in NOISE_FAMILIES.items() if kind.closed_form_groups]
+        raise InputError(
+            f"{place}: {what} {'is' if verb == 'needs' else 'are'} integrated out in closed form, which noise '{family}' does "
+            f"not allow; expected {' or '.join(usable)}"
+        )
+    return family, "1" if NOISE_FAMILIES[family].logarithmic else QUANTITIES[observable].unit
+
+
+def scale_that_swallows(spec: ParameterSpec, place: str, between: str) -> None:
+    """Refuse a prior of the scale of an effect on a logarithm that admits effects which explain anything."""
+    far = 0.0 if spec.prior is None else float(spec.prior.quantile(0.999))
+    if not far <= LARGEST_SCALE:
+        raise InputError(
+            f"{place}: the prior reaches to {far:.3g} (99.9 %), a factor of "
+            f"{'many' if far > 20 else f'{2.718281828**far:.0f}'} {between}; such an effect can swallow any misfit. "
+            f"Expected at most {LARGEST_SCALE:g}, such as {{ half_normal = 0.5 }} or {{ uniform = [0, 1] }}"
+        )
 
 
 def read_covariates(

@@ -17,6 +17,13 @@ from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, ModelBlock, RheologyBlock
 from skinbayes.files.noise_block import noise_parameter_names, read_noise
 from skinbayes.files.parameter_block import ParameterSpec, label_column, parse_levels, parse_value
+from skinbayes.files.scatter_block import (
+    SCATTER_PARAMETERS,
+    CorrelationSpec,
+    DiscrepancySpec,
+    read_correlation,
+    read_discrepancy,
+)
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
 from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
@@ -42,6 +49,7 @@ class ModelSpec:
     noise : observable to the name of its noise family
     noise_parameters : parameters of noise and discrepancy
     groups : scales of group effects, ``group_scale[person]``
+    discrepancy, correlation : smooth curves that the theory misses, and how noise is correlated; None without them
     covariates, covariate_exponents : columns that act as a power on an input or the observable, and their exponents
     rheology, rheology_by : data set of flow curves (shipped key or path) and the grouping column they belong to, or None
     derived : named products to compute afterwards
@@ -68,6 +76,8 @@ class ModelSpec:
     noise: dict[str, str] = field(default_factory=dict)
     noise_parameters: tuple[ParameterSpec, ...] = ()
     groups: tuple[ParameterSpec, ...] = ()
+    discrepancy: DiscrepancySpec | None = None
+    correlation: CorrelationSpec | None = None
     covariates: tuple[CovariateSpec, ...] = ()
     covariate_exponents: tuple[ParameterSpec, ...] = ()
     rheology: str | None = None
@@ -156,10 +166,13 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
     of_data: dict[str, Any] = {}
     if data is not None and block.noise is not None:
         names, several = data.names(), data.observables is not None
-        families, noise_parameters = read_noise(block.noise, names, several, where)
+        families, noise_parameters = read_noise(block.noise.model_extra or {}, names, several, where)
         rows = {key: tuple(levels) for key, levels in data.rows.items()}
         of_data = data.model_dump(include={"spread", "input_spread", "missing"})
         of_data |= {"observables": tuple(names), "rows": rows}
+        of_data["correlation"] = read_correlation(
+            block.noise.correlation, families, noise_parameters, (data.spread, data.input_spread), where
+        )
     covariates, exponents = read_covariates(block.covariates, where)
 
     def resolved(table: DataBlock | RheologyBlock | None) -> str | None:
@@ -186,6 +199,7 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         noise=families,
         noise_parameters=noise_parameters,
         groups=read_groups(block.groups, families, where),
+        discrepancy=read_discrepancy(block.discrepancy, families, where),
         covariates=covariates,
         covariate_exponents=exponents,
         rheology=resolved(rheology),
@@ -236,6 +250,8 @@ def _check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
 def _parameter_quantity(name: str, where: str) -> Quantity:
     if name in noise_parameter_names():
         raise InputError(f"{where}: '{name}' belongs into [noise]")
+    if name in SCATTER_PARAMETERS:
+        raise InputError(f"{where}: '{name}' belongs into [groups], [discrepancy] or [noise.correlation]")
     if name not in QUANTITIES:
         raise InputError(
             f"{where}: unknown parameter '{shortened(name)}'.{suggestions(name, list(QUANTITIES))}"

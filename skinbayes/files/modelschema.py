@@ -81,6 +81,34 @@ class GroupBlock(_Strict):
     scale: Any
 
 
+class DiscrepancyBlock(_Strict):
+    """``[discrepancy]``: what the theory misses along columns, smooth curves that are fitted with it."""
+
+    along: str | Annotated[list[str], Field(min_length=1)]
+    within: str | None = None
+    axis: Literal["linear", "logarithmic"] | None = None
+    size: Any = None
+    length: Any = None
+
+
+class CorrelationBlock(_Strict):
+    """``[noise.correlation]``: noise with a memory along a column."""
+
+    along: str
+    within: str | None = None
+    length: Any = None
+    independent: Any = None
+    drift: Any = None
+
+
+class NoiseTable(BaseModel):
+    """``[noise]``: beside the correlation it holds what the noise families know, read elsewhere."""
+
+    model_config = ConfigDict(extra="allow", strict=True, frozen=True)
+
+    correlation: CorrelationBlock | None = None
+
+
 class CovariateBlock(_Strict):
     """``[covariates.NAME]``: a column of the data that multiplies an input or the observable as a power."""
 
@@ -133,8 +161,9 @@ class ModelBlock(_Strict):
     data: DataBlock | None = None
     surface: SurfaceBlock | None = None
     parameters: dict[str, Any]
-    noise: dict[str, Any] | None = None
+    noise: NoiseTable | None = None
     groups: dict[str, GroupBlock] = Field(default_factory=dict)
+    discrepancy: DiscrepancyBlock | None = None
     covariates: dict[str, CovariateBlock] = Field(default_factory=dict)
     rheology: RheologyBlock | None = None
     derived: dict[str, DerivedBlock] = Field(default_factory=dict)

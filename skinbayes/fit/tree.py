@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import xarray
 
     from skinbayes.problem import Problem
+    from skinbayes.problem.shared_scatter import SharedScatter
 
 CHUNK = 500
 """Parameter vectors predicted at a time."""
@@ -30,6 +31,9 @@ KEPT_NUMBERS = 4_000_000
 
 MOST_ROWS_EACH = 400
 """With more rows than this, what is derived for each row stands in a group of its own, apart from the parameters."""
+
+CURVE_POINTS = 41
+"""Points at which a curve of the discrepancy is kept."""
 
 FLAG_DRAWS = 500
 """Draws of which the edge of the theory is looked at."""
@@ -51,11 +55,12 @@ def posterior_groups(
     -------
     dict
         ``posterior`` (parameters, derived quantities, effects of groups), ``sample_stats``, ``posterior_predictive``,
-        ``log_likelihood`` (pointwise), ``log_likelihood_left_out`` (by levels of grouping columns) and ``validity`` (share
-        of the draws in which a row is at the edge of the theory); with more than 400 rows ``derived_by_row``. What differs by row
-        is kept of evenly spaced draws, as many as `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
+        ``log_likelihood`` (pointwise), ``log_likelihood_left_out`` (by levels of grouping columns), ``discrepancy`` (curves
+        that the theory misses, and drifts) and ``validity`` (share of the draws in which a row is at the edge of the theory);
+        with more than 400 rows ``derived_by_row``. What differs by row is kept of evenly spaced draws, as many as
+        `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
     """
-    effects = None if problem.groups is None else _at(draws, lambda theta: problem.draw_effects(theta, rng))
+    effects = None if problem.shared is None else _at(draws, lambda theta: problem.draw_effects(theta, rng))
     step = _thinning(problem, draws)
     kept, kept_effects = draws[:, ::step], None if effects is None else effects[:, ::step]
     pointwise = partial(problem.log_likelihood, pointwise=True)
@@ -67,6 +72,8 @@ def posterior_groups(
     }
     if by_row := _derived_by_row(problem, kept):
         groups["derived_by_row"] = _dataset(by_row, kept, {"row": problem.conditions.row_labels()}, step)
+    if problem.correlated is not None and kept_effects is not None:
+        groups |= _discrepancy(problem.correlated, kept, kept_effects, step)
     left_out = {
         column: (
             ("chain", "draw", f"{column}_level"),
@@ -81,6 +88,25 @@ def posterior_groups(
     if flags := _flags(problem, draws):
         groups["validity"] = _dataset(flags, draws, {"row": problem.conditions.row_labels()})
     return groups
+
+
+def _discrepancy(
+    shared: SharedScatter, draws: FloatArray, effects: FloatArray, step: int
+) -> dict[str, xarray.Dataset]:
+    """Curves of the discrepancy along each of its columns, and the drift of each series, on the scale on which data scatter."""
+    variables: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {}
+    flat = effects.reshape(-1, effects.shape[-1])
+    for axis, values, curves in shared.curves(flat, CURVE_POINTS):
+        level = [f"{axis.within}_level"] if axis.within else []
+        coordinates |= {f"{axis.column}_point": values} | {name: list(axis.levels) for name in level}
+        shape = (*draws.shape[:2], *((len(axis.levels),) if level else ()), CURVE_POINTS)
+        dimensions = ("chain", "draw", *level, f"{axis.column}_point")
+        variables[f"discrepancy_along_{axis.column}"] = (dimensions, curves.reshape(shape))
+    if shared.scatter.drift:
+        coordinates["series"] = list(shared.series)
+        variables["drift"] = (("chain", "draw", "series"), effects[..., shared.scatter.drift_effects])
+    return {"discrepancy": _dataset(variables, draws, coordinates, step)} if variables else {}
 
 
 def weighted_group(problem: Problem, draws: FloatArray, log_weights: FloatArray) -> xarray.Dataset:
@@ -140,6 +166,14 @@ def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
         name + STANDARD_DEVIATION_SUFFIX: (("row",), spread * problem.conditions.values[name])
         for name, spread in problem.input_spread.items()
     }
+    if (
+        problem.correlated is not None
+    ):  # also columns along which rows are correlated that the forward model does not take
+        constant |= {
+            name: (("row",), values)
+            for name, values in problem.correlated.along.items()
+            if name not in constant
+        }
     groups = {
         "observed_data": xarray.Dataset(observed, coords=coordinates),
         "constant_data": xarray.Dataset(constant, coords=coordinates),

@@ -99,7 +99,7 @@ def plot_effects(
             ax = figure.add_subplot(grid[i], sharex=axes[0] if axes else None)
             axes.append(ax)
             _levels(ax, fit, column, predictions, letters)
-        _ratio_axis(axes[0].xaxis, axes[0].get_xlim(), predictions.logarithmic[observables(fit)[0]])
+        ratio_axis(axes[0].xaxis, axes[0].get_xlim(), predictions.logarithmic[observables(fit)[0]])
         axes[-1].set_xlabel(_residual_name(observables(fit)[0], predictions))
         key_below(figure, axes[0], 3)
         set_title(figure, fit, title)
@@ -194,7 +194,7 @@ def plot_residuals(
         for ax, (name, x) in zip(axes, pairs, strict=True):
             residuals = predictions.residuals(name, observed[names.index(name)], *group_columns(fit))
             _against(ax, against[x], x, residuals)
-            _ratio_axis(ax.yaxis, ax.get_ylim(), predictions.logarithmic[name])
+            ratio_axis(ax.yaxis, ax.get_ylim(), predictions.logarithmic[name])
             ax.set_ylabel(
                 _residual_name(name, predictions).replace(" over ", "\nover ").replace(" less ", "\nless ")
             )
@@ -235,7 +235,7 @@ def _residual_name(name: str, predictions: RowPredictions) -> str:
     return f"{symbol}, observed less predicted" + ("" if unit == "1" else f" [{unit}]")
 
 
-def _ratio_axis(axis: Axis, limits: tuple[float, float], logarithmic: bool) -> None:
+def ratio_axis(axis: Axis, limits: tuple[float, float], logarithmic: bool) -> None:
     """Ticks of an axis that holds ln of a ratio: the ratio; a difference has its own numbers."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset
 from skinbayes.files.modelfile import ModelSpec
@@ -29,6 +30,7 @@ from skinbayes.problem.rows import (
     user_rows,
 )
 from skinbayes.problem.settings import apply_settings
+from skinbayes.problem.shared_scatter import scatter_parameters, shared_scatter
 from skinbayes.problem.surface import Surface, choose_surface
 from skinbayes.problem.tied import resolve_ties
 from skinbayes.roughness import TabulatedSpectrum
@@ -41,6 +43,12 @@ class _Rows:
     conditions: Conditions
     dataset: Dataset | None = None
     observations: tuple[Observation, ...] = ()
+
+    @property
+    def columns(self) -> dict[str, FloatArray]:
+        """Numeric columns of the data, SI."""
+        columns = {} if self.dataset is None else self.dataset.columns
+        return {name: np.asarray(v, dtype=float) for name, v in columns.items() if v.dtype.kind == "f"}
 
 
 def bind(
@@ -136,7 +144,8 @@ def _completed(
         for key, value in forward.defaults(given).items()
     ]
     inputs = resolve_ties([*parameters, *defaults], str(spec.path), rows.conditions.values)
-    return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups)
+    shared = scatter_parameters(spec, rows.conditions, rows.columns) if rows.observations else ()
+    return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups, *shared)
 
 
 def _problem(
@@ -149,6 +158,10 @@ def _problem(
     settings: Mapping[str, str],
 ) -> Problem:
     flow_curves = flow_curves_of(curves, spec.rheology_by, rows.conditions, spec.path)
+    groups, shared = None, None
+    if rows.observations:
+        groups = crossed_groups(spec, rows.conditions)
+        shared = shared_scatter(spec, rows.conditions, rows.columns, groups, parameters)
     problem = Problem(
         spec=spec,
         forward=forward,
@@ -161,10 +174,11 @@ def _problem(
         input_spread={}
         if rows.dataset is None
         else relative_input_spread(spec, rows.dataset, rows.conditions),
-        groups=crossed_groups(spec, rows.conditions) if rows.observations else None,
+        groups=groups,
         tables=Tables(spectrum, flow_curves),
         flow_curves=curves,
         settings=settings,
+        correlated=shared,
     )
     try:
         _ = problem.plan

@@ -22,6 +22,8 @@ from skinbayes.problem.failures import explained
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.ranges import input_ranges
+from skinbayes.problem.shared_scatter import SharedScatter
+from skinbayes.statistics.correlated_scatter import CorrelatedScatter
 from skinbayes.statistics.groups import CrossedGroups
 
 
@@ -46,6 +48,7 @@ class BoundModel:
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
     settings : values set over the model file, as given
     tied : parameters that are multiples of free or fixed ones
+    correlated : group effects together with the discrepancy and correlated noise, or None if there is neither of these two
 
     Examples
     --------
@@ -71,6 +74,7 @@ class BoundModel:
     flow_curves: Mapping[str, FlowCurve]
     settings: Mapping[str, str] = field(default_factory=dict)
     tied: tuple[ParameterSpec, ...] = ()
+    correlated: SharedScatter | None = None
 
     @property
     def name(self) -> str:
@@ -81,6 +85,18 @@ class BoundModel:
     def names(self) -> tuple[str, ...]:
         """Names of the free parameters; ``name[level]`` where a parameter differs by a grouping column."""
         return tuple(parameter.label for parameter in self.free)
+
+    @property
+    def shared(self) -> CrossedGroups | CorrelatedScatter | None:
+        """What rows share beside the prediction, integrated out; None if they are independent."""
+        return self.groups if self.correlated is None else self.correlated.scatter
+
+    @property
+    def shared_parameters(self) -> tuple[str, ...]:
+        """Names among the inputs of the scales of what rows share, in their order."""
+        if self.correlated is not None:
+            return self.correlated.parameters
+        return () if self.groups is None else tuple(f"group_scale[{c}]" for c in self.groups.columns)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -37,6 +37,7 @@ def build_problem(
     missing: str | None = None,
     surface: str | Path | TabulatedSpectrum | None = None,
     groups: Mapping[str, Any] | None = None,
+    discrepancy: Mapping[str, Any] | None = None,
     covariates: Mapping[str, Mapping[str, Any]] | None = None,
     rheology: Mapping[str, Any] | None = None,
     derived: Mapping[str, Mapping[str, Any]] | None = None,
@@ -58,13 +59,16 @@ def build_problem(
     parameters : name to a fixed value, or to a prior such as ``{"lognormal": ["15 MPa", 0.5], "source": "…"}``, or to one of
         these for each level: ``{"by": "state", "dry": …, "wet": …}``; or to a multiple of another parameter:
         ``{"same_as": "young_modulus_layer", "times": 0.5}``
-    noise : its ``family`` and parameters; with several observables one such mapping for each
+    noise : its ``family`` and parameters, and a ``correlation`` if rows follow each other; with several observables one such
+        mapping for each
     observable : column (or columns) that the model explains; the first of the forward model if not given
     rows : label column to the labels of the rows that are used
     spread, input_spread : ``"use"`` or ``"ignore"`` the columns ``…_standard_deviation`` of observables, and of inputs
     missing : ``"drop"`` to leave out rows without a value in a column that is used
     surface : a named surface, the path of a spectrum, or a spectrum
     groups : label column to the prior of the scale of the effects that its rows share
+    discrepancy : ``along`` which column or columns the theory misses smooth curves; ``within`` which label, on which ``axis``,
+        and the priors of ``size`` and ``length`` if they are not the usual ones
     covariates : name to ``column``, ``acts_on``, ``reference`` and ``exponent``
     rheology : ``by`` (a label column) and ``data``, flow curves of the liquids, in any form that data have
     derived : name to ``product`` and, if wanted, ``rows``, ``symbol``, ``meaning``
@@ -128,6 +132,12 @@ def build_problem(
         column: {"scale": written_parameter(_scale(entry), unit, f"{name}: groups.{column}")}
         for column, entry in (groups or {}).items()
     }
+    if discrepancy is not None:
+        units = {"size": unit, "length": "1"}
+        content["discrepancy"] = {
+            key: written_parameter(entry, units[key], f"{name}: discrepancy.{key}") if key in units else entry
+            for key, entry in discrepancy.items()
+        }
     content["covariates"] = {
         key: {
             **block,
@@ -179,12 +189,20 @@ def _unit(name: str) -> str:
 
 def _noise(observable: str, block: Mapping[str, Any], where: str) -> dict[str, Any]:
     unit = _noise_unit(observable, block)
-    return {
+    found = {
         key: value
-        if key == "family"
+        if key in ("family", "correlation")
         else written_parameter(value, unit if key == "noise_scale" else _unit(key), f"{where}.{key}")
         for key, value in block.items()
     }
+    if isinstance(found.get("correlation"), Mapping):
+        one = found["correlation"]
+        units = {"length": _unit(str(one.get("along"))), "independent": "1", "drift": unit}
+        found["correlation"] = {
+            key: written_parameter(entry, units[key], f"{where}.correlation.{key}") if key in units else entry
+            for key, entry in one.items()
+        }
+    return found
 
 
 def _noise_unit(observable: str, block: Mapping[str, Any]) -> str:

@@ -13,6 +13,7 @@ from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
+from skinbayes.files.scatter_block import SCATTER_PARAMETERS
 from skinbayes.phrases import row_count
 from skinbayes.problem.failures import explained
 from skinbayes.problem.pieces import PIECE, named_in_pieces
@@ -180,7 +181,7 @@ def _predictions(
 def _identify(
     problem: StatisticalModel, draws: FloatArray, positive: NDArray[np.bool_]
 ) -> Identifiability | None:
-    scatter = (*noise_parameter_names(), "group_scale")
+    scatter = (*noise_parameter_names(), *SCATTER_PARAMETERS)
     entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
     if not entering:
         return None
@@ -234,7 +235,7 @@ def _identify(
 
 def _groups(problem: StatisticalModel) -> dict[str, NDArray[np.intp]]:
     groups: dict[str, NDArray[np.intp]] = {}
-    if problem.groups is not None:  # rows scatter together, so that none of them stands by itself
+    if problem.shared is not None:  # rows scatter together, so that none of them stands by itself
         return groups
     several, rows = len(problem.observations), problem.conditions.n_rows
     if several > 1:

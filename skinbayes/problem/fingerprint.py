@@ -18,6 +18,7 @@ from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import ForwardModel, Tables
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
+from skinbayes.problem.shared_scatter import SharedScatter
 from skinbayes.roughness import TabulatedSpectrum
 from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise import NoiseFamily
@@ -41,6 +42,7 @@ def digest_model(
     observations: Sequence[Observation],
     input_spread: Mapping[str, FloatArray],
     groups: CrossedGroups | None,
+    correlated: SharedScatter | None,
     tables: Tables,
     data_digest: str,
 ) -> str:
@@ -63,6 +65,7 @@ def digest_model(
             "labels": _arrays(conditions.labels),
             "input_spread": _arrays(input_spread),
             "groups": None if groups is None else [groups.columns, groups.levels, _array(groups.member)],
+            **({} if correlated is None else {"correlated": _correlated(correlated)}),
             "data": data_digest,
             "spectrum": None if not isinstance(table, TabulatedSpectrum) else [
                 _array(table.wavevector), _array(table.node_power), _array(table.scale)
@@ -70,6 +73,12 @@ def digest_model(
             "flow_curves": [[_array(c.shear_rate), _array(c.measured_viscosity)] for c in tables.flow_curves or ()],
         }
     )  # fmt: skip
+
+
+def _correlated(shared: SharedScatter) -> list[Any]:
+    curves = [[_array(c.x), _array(c.level), c.n_nodes] for c in shared.scatter.curves]
+    noise = shared.scatter.noise
+    return [shared.parameters, curves, noise and [_array(noise.along), _array(noise.series)]]
 
 
 def _noise(family: NoiseFamily) -> list[str]:

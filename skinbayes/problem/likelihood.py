@@ -14,20 +14,20 @@ from skinbayes.errors import InputError
 from skinbayes.problem.observations import NOISE_WORDS, Observation, propagated_spread
 from skinbayes.problem.pieces import in_pieces
 from skinbayes.problem.predicting import PredictingModel
-from skinbayes.statistics.groups import CrossedGroups
+from skinbayes.statistics.correlated_scatter import CorrelatedScatter
 
 
 @dataclass(frozen=True)
 class Likelihood:
     """Log-density of the data of a problem and draws from it, for batches ``(B, D)`` of parameter vectors in SI.
 
-    ``y = f(θ) + effects + noise``, or ``ln y = ln f(θ) + effects + noise`` where the noise is logarithmic. Effects of groups
-    are normal and integrated out.
+    ``y = f(θ) + effects + noise``, or ``ln y = ln f(θ) + effects + noise`` where the noise is logarithmic. Effects of groups,
+    the curves of a discrepancy and a drift are normal and integrated out; noise may be correlated.
 
     Attributes
     ----------
     problem : what predicts
-    counted : which data enter ``total``, shape ``(M,)``, where there are no groups; None for all
+    counted : which data enter ``total``, shape ``(M,)``, where nothing is shared between data; None for all
     """
 
     problem: PredictingModel
@@ -67,33 +67,38 @@ class Likelihood:
         predicted = in_pieces(lambda part: np.stack(self._predictions(part)[1], axis=1), theta, self.size)
         spread = in_pieces(self._stacked_spread, theta, self.size) if self.problem.input_spread else None
         inputs = self.problem.inputs(theta)
-        drawn = [
-            o.noise.draw(
-                rng,
-                predicted[:, i],
-                observed=o.values,
-                **o.noise_arguments(inputs, None if spread is None else spread[:, i]),
-            )
-            for i, o in enumerate(self._observations)
-        ]
-        groups = self.problem.groups
-        if groups is not None:
+        shared, noise = self.problem.shared, None
+        if isinstance(shared, CorrelatedScatter) and shared.noise is not None:
+            noise = shared.draw_noise(rng, self._scales(inputs, len(theta)))
+        drawn = []
+        for i, o in enumerate(self._observations):
+            arguments = o.noise_arguments(inputs, None if spread is None else spread[:, i])
+            if noise is None:
+                drawn.append(o.noise.draw(rng, predicted[:, i], observed=o.values, **arguments))
+            else:
+                apart = noise * o.noise.width(predicted[:, i], observed=o.values, **arguments)
+                drawn.append(
+                    predicted[:, i] * np.exp(apart) if o.noise.logarithmic else predicted[:, i] + apart
+                )
+        if shared is not None:
             if effects is None:
-                effects = groups.draw_new_effects(rng, self._scales(groups, inputs, len(theta)))
-            at_rows = groups.at_rows(effects)
+                effects = shared.draw_new_effects(rng, self._scales(inputs, len(theta)))
+            at_rows = shared.at_rows(effects)
             logarithmic = self._observations[0].noise.logarithmic
             drawn = [drawn[0] * np.exp(at_rows) if logarithmic else drawn[0] + at_rows]
         return np.concatenate(drawn, axis=-1)
 
     def draw_effects(self, theta: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Effects of all levels of all groups given parameters and data, shape ``(B, G)``."""
-        groups = self.problem.groups
+        """All that rows share given parameters and data, shape ``(B, G)``: effects of groups first."""
+        groups = self.problem.shared
         if groups is None:
-            raise InputError(f"{self.problem.spec.path}: '{self.problem.name}' has no [groups]")
+            raise InputError(
+                f"{self.problem.spec.path}: '{self.problem.name}' has no [groups] or [discrepancy]"
+            )
 
         def piece(part: FloatArray) -> FloatArray:
             inputs, (predicted,) = self._predictions(part)
-            residual, width, scales, _ = self._residuals(groups, inputs, predicted)
+            residual, width, scales, _ = self._residuals(inputs, predicted)
             return groups.draw_effects(rng, residual, width, scales)
 
         return in_pieces(piece, theta, self.size)
@@ -109,10 +114,10 @@ class Likelihood:
         """
         batch = theta[np.newaxis]
         width = self.width(batch)
-        groups = self.problem.groups
+        groups = self.problem.shared
         if groups is None:
             return changes / width
-        scales = self._scales(groups, self.problem.inputs(batch), 1)
+        scales = self._scales(self.problem.inputs(batch), 1)
         return groups.independent(changes, width, scales)
 
     # -- inner parts -------------------------------------------------------------------------------------------------
@@ -128,17 +133,22 @@ class Likelihood:
     @property
     def size(self) -> int:
         """Numbers that one vector needs: its data, and the matrix of the levels of groups."""
-        groups = self.problem.groups
+        groups = self.problem.shared
         matrices = 0 if groups is None else groups.matrix_size
         return len(self._observations) * self.problem.conditions.n_rows + matrices
 
     def _total(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
-        groups = self.problem.groups
+        groups = self.problem.shared
         if groups is None:
             each = self._pointwise(inputs, predicted)
             return (each if self.counted is None else each[..., self.counted]).sum(axis=-1)
-        residual, width, scales, offset = self._residuals(groups, inputs, predicted[0])
-        density = groups.log_density(residual, width, scales) + offset.sum()
+        residual, width, scales, offset = self._residuals(inputs, predicted[0])
+        if (
+            self.counted is not None and not self.counted.any()
+        ):  # of some of its data a problem of its own is made
+            density = np.zeros(len(residual))
+        else:
+            density = groups.log_density(residual, width, scales) + offset.sum()
         return np.where(np.isnan(predicted[0]).any(axis=-1), np.nan, density)
 
     def _pointwise(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
@@ -150,12 +160,12 @@ class Likelihood:
         return np.concatenate(each, axis=-1) if len(each) > 1 else each[0]
 
     def _left_out(self, theta: FloatArray, block: NDArray[np.intp], count: int) -> FloatArray:
-        groups = self.problem.groups
+        groups = self.problem.shared
         if groups is None:
             pointwise = self._pointwise(*self._predictions(theta))
             return np.stack([pointwise[:, block == i].sum(axis=-1) for i in range(count)], axis=-1)
         inputs, (predicted,) = self._predictions(theta)
-        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        residual, width, scales, offset = self._residuals(inputs, predicted)
         jacobian = np.bincount(block, weights=offset, minlength=count)
         density = groups.log_density_left_out(residual, width, scales, block) + jacobian
         return np.where(np.isnan(predicted).any(axis=-1, keepdims=True), np.nan, density)
@@ -220,18 +230,18 @@ class Likelihood:
     def _of_each(
         self, observation: Observation, inputs: Mapping[str, FloatArray], predicted: FloatArray
     ) -> FloatArray:
-        groups = self.problem.groups
+        groups = self.problem.shared
         if groups is None:
             known = self._known_widths.get(observation.name)
             width = self._width(observation, inputs, predicted) if known is None else known
             shape = observation.shape_arguments(inputs)
             with np.errstate(all="ignore"):
                 return observation.noise.log_density_at(observation.values, predicted, width, **shape)
-        residual, width, scales, offset = self._residuals(groups, inputs, predicted)
+        residual, width, scales, offset = self._residuals(inputs, predicted)
         return groups.log_density_pointwise(residual, width, scales) + offset
 
     def _residuals(
-        self, groups: CrossedGroups, inputs: Mapping[str, FloatArray], predicted: FloatArray
+        self, inputs: Mapping[str, FloatArray], predicted: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """What scatters ``(B, N)``, its width, the scales of the effects, and ln of the Jacobian for each datum ``(N,)``."""
         (observation,) = self._observations
@@ -239,9 +249,9 @@ class Likelihood:
         width = self._width(observation, inputs, predicted)
         values = observation.values
         offset = -np.log(values) if observation.noise.logarithmic else np.zeros_like(values)
-        return residual, width, self._scales(groups, inputs, len(predicted)), offset
+        return residual, width, self._scales(inputs, len(predicted)), offset
 
-    def _scales(self, groups: CrossedGroups, inputs: Mapping[str, FloatArray], count: int) -> FloatArray:
-        """Scale of the effects of each grouping column, shape ``(B, columns)``."""
-        columns = [inputs[f"group_scale[{column}]"][:, 0] for column in groups.columns]
+    def _scales(self, inputs: Mapping[str, FloatArray], count: int) -> FloatArray:
+        """Scales of what rows share, shape ``(B, P)``."""
+        columns = [inputs[name][:, 0] for name in self.problem.shared_parameters]
         return np.stack([np.broadcast_to(column, (count,)) for column in columns], axis=-1)

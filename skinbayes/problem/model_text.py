@@ -12,6 +12,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.files.parameter_block import ParameterSpec, parse_parameter
+from skinbayes.files.scatter_block import CORRELATION_KEYS, SCATTER_PARAMETERS, DiscrepancySpec
 from skinbayes.files.spectrum import spectrum_text
 from skinbayes.files.toml_text import toml_text
 from skinbayes.files.written import written_parameter, written_value
@@ -67,6 +68,16 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
     if spec.groups:
         scales = [p for p in problem.parameters if p.name == "group_scale"]
         content["groups"] = {str(p.level): {"scale": _entry(spec.path, p)} for p in scales}
+    shared = {p.label: _entry(spec.path, p) for p in problem.parameters if p.name in SCATTER_PARAMETERS}
+    if spec.discrepancy is not None:
+        content["discrepancy"] = _discrepancy(spec.discrepancy, shared)
+    if spec.correlation is not None:
+        one = spec.correlation
+        content["noise"]["correlation"] = (
+            {"along": one.along}
+            | ({"within": one.within} if one.within else {})
+            | {key: shared[name] for key, name in CORRELATION_KEYS.items() if name in shared}
+        )
     if spec.covariates:
         content["covariates"] = {
             c.name: {
@@ -112,6 +123,18 @@ def write_model(problem: BoundModel, path: Path) -> str:
     for file, text in files.items():
         write_atomically(file, text.encode())
     return files[path]
+
+
+def _discrepancy(spec: DiscrepancySpec, entries: Mapping[str, Any]) -> dict[str, Any]:
+    several = len(spec.columns) > 1
+    found: dict[str, Any] = {"along": list(spec.columns) if several else spec.columns[0]}
+    found |= {"within": spec.within} if spec.within else {}
+    found |= {"axis": spec.axis} if spec.axis else {}
+    for key in ("size", "length"):
+        each = {column: entries.get(f"discrepancy_{key}[{column}]") for column in spec.columns}
+        if all(each.values()):
+            found[key] = {"by": "column", **each} if several else next(iter(each.values()))
+    return found
 
 
 def _data(problem: BoundModel, path: Path, beside: Any) -> dict[str, Any]:

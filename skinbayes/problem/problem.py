@@ -22,7 +22,8 @@ class Problem(StatisticalModel):
 
     Attributes
     ----------
-    spec, forward, free, fixed, conditions, dataset, observations, input_spread, groups, tables, flow_curves, settings, tied : see
+    spec, forward, free, fixed, conditions, dataset, observations, input_spread, groups, tables, flow_curves, settings, tied,
+    correlated : see
         :class:`~skinbayes.problem.bound.BoundModel`
 
     Examples

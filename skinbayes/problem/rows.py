@@ -129,6 +129,10 @@ def used_columns(spec: ModelSpec, forward: ForwardModel, taken: Collection[str])
     ]
     labels = {p.by for p in (*spec.parameters, *spec.noise_parameters) if p.by_column}
     labels |= {scale.level for scale in spec.groups} | {spec.rheology_by, *spec.rows}
+    if spec.discrepancy is not None:
+        labels |= {spec.discrepancy.within, *spec.discrepancy.columns}
+    if spec.correlation is not None:
+        labels |= {spec.correlation.within, spec.correlation.along}
     labels |= {column for block in spec.derived.values() for column in block.rows}
     found = inputs | set(spec.observables) | {covariate.column for covariate in spec.covariates} | labels
     return {name for name in found if name} | {

@@ -40,7 +40,7 @@ class StatisticalModel(PredictingModel):
         """Digest of everything the posterior depends on; a run is only continued where it is the same."""
         return digest_model(
             self.spec, self.forward, self.parameters, self.conditions, self.observations, self.input_spread,
-            self.groups, self.tables, self.data_fingerprint,
+            self.groups, self.correlated, self.tables, self.data_fingerprint,
         )  # fmt: skip
 
     @cached_property
@@ -78,8 +78,8 @@ class StatisticalModel(PredictingModel):
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
         """Log-likelihood of the data.
 
-        With group effects the pointwise terms are ln p(datum | all others, θ), which is what leaving one out needs; they do
-        not sum to the whole. NaN and +inf from the forward model become −inf.
+        Where rows share effects, a discrepancy or correlated noise, the pointwise terms are ln p(datum | all others, θ), which is
+        what leaving one out needs; they do not sum to the whole. NaN and +inf from the forward model become −inf.
 
         Parameters
         ----------
@@ -286,7 +286,7 @@ class StatisticalModel(PredictingModel):
         return unbatch(self.likelihood.draw(batch, rng, effects), single)
 
     def draw_effects(self, theta: ArrayLike, rng: np.random.Generator) -> FloatArray:
-        """Draw the effects of all levels of all groups given parameters and data.
+        """Draw all that rows share given parameters and data: effects of groups, curves of the discrepancy, drifts.
 
         Parameters
         ----------
@@ -301,7 +301,7 @@ class StatisticalModel(PredictingModel):
         Raises
         ------
         InputError
-            The model has no groups or no data.
+            The model has neither groups nor a discrepancy nor a drift, or no data.
 
         Examples
         --------

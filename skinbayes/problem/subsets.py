@@ -47,7 +47,12 @@ def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem:
         reduced.__dict__["model"] = problem.model
         reduced.__dict__["likelihood"] = replace(problem.likelihood, counted=keep)
         return reduced
-    labels, groups = problem.conditions.labels, problem.groups
+    labels, groups, shared = problem.conditions.labels, problem.groups, problem.correlated
+    if shared is not None:  # all of its effects stay, as those of the curves do
+        shared = shared.rows(keep)
+        groups = shared.scatter.groups
+    elif groups is not None:
+        groups = CrossedGroups.of_labels({name: labels[name][keep] for name in groups.columns})
     return _of_rows(
         problem,
         keep,
@@ -56,7 +61,8 @@ def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem:
             replace(o, values=o.values[keep], spread=o.spread[keep]) for o in problem.observations
         ),
         input_spread=_kept(problem.input_spread, keep),
-        groups=groups and CrossedGroups.of_labels({name: labels[name][keep] for name in groups.columns}),
+        groups=groups,
+        correlated=shared,
     )
 
 
@@ -79,7 +85,7 @@ def one_row_of_each_level(problem: Problem) -> Problem:
     _, first = np.unique(kinds(list(rows.labels.values()), rows.n_rows), return_index=True)
     keep = np.zeros(rows.n_rows, dtype=bool)
     keep[first] = True
-    return _of_rows(problem, keep, observations=(), input_spread={}, groups=None)
+    return _of_rows(problem, keep, observations=(), input_spread={}, groups=None, correlated=None)
 
 
 def _of_rows(problem: Problem, keep: NDArray[np.bool_], **changes: Any) -> Problem:

@@ -10,6 +10,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.find_dataset import find_dataset
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import label_column
+from skinbayes.files.scatter_block import ORDER
 from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
 from skinbayes.problem.rheology import REPLACED
@@ -133,6 +134,9 @@ def _labels(spec: ModelSpec) -> dict[str, str]:
         reasons.setdefault(column, []).append(f"{name} differs by it: {', '.join(known)}")
     for scale in spec.groups:
         reasons.setdefault(str(scale.level), []).append("rows with the same one share an effect")
+    for block in (spec.discrepancy, spec.correlation):
+        if block is not None and block.within is not None:
+            reasons.setdefault(block.within, []).append("each has a curve or a series of its own")
     for column, kept in spec.rows.items():
         label_column(column, f"{spec.path}: data.rows")
         own = _own_columns(spec)
@@ -174,6 +178,13 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
     for covariate in spec.covariates:
         if covariate.column not in found:
             found[covariate.column] = f"covariate '{covariate.name}' of {covariate.acts_on}"
+    along = (
+        {}
+        if spec.discrepancy is None
+        else dict.fromkeys(spec.discrepancy.columns, "the discrepancy is a curve along it")
+    )
+    along |= {} if spec.correlation is None else {spec.correlation.along: "the noise is correlated along it"}
+    found |= {name: why for name, why in along.items() if name != ORDER and name not in found}
     return found
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.plot.predictive import row_names
 from skinbayes.plot.updates import fit_updates
+from skinbayes.report.discrepancy import discrepancy_findings
 from skinbayes.report.groups import group_findings
 from skinbayes.report.repeats import repeats
 from skinbayes.report.ridges import posterior_ridges
@@ -31,7 +32,8 @@ def digest(fit: Fit) -> dict[str, Any]:
         ``prior_sensitivity`` (parameter to what its prior half and twice as wide would change; None if model or data are gone).
         ``validity`` (flag to the number of rows flagged in at least 5 % of the draws, the fraction of all predictions, what it
         means, and the fraction of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of
-        each effect, the scale over the noise, the fraction of the variance), ``ridges`` (pairs of parameters, exponent, the
+        each effect, the scale over the noise, the fraction of the variance), ``discrepancy`` (column to the
+        quantiles of what the theory misses along it), ``ridges`` (pairs of parameters, exponent, the
         combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
         checks of its residuals along columns that simulated data hardly ever meet, the most surprising first), ``repeats``
         (observable to the scatter of rows of the same conditions and the misfit beside it). Quantities in SI.
@@ -41,6 +43,7 @@ def digest(fit: Fit) -> dict[str, Any]:
         "prior_sensitivity": brief_sensitivity(fit),
         "validity": {flag.name: flag.to_dict(names) for flag in flags(fit)},
         "groups": {finding.column: finding.to_dict() for finding in group_findings(fit)},
+        "discrepancy": {finding.column: finding.to_dict() for finding in discrepancy_findings(fit)},
         "ridges": [asdict(ridge) for ridge in posterior_ridges(fit)],
         "priors": {
             label: {

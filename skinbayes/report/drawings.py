@@ -11,6 +11,7 @@ from skinbayes.phrases import plural
 from skinbayes.plot import (
     plot_corner,
     plot_data,
+    plot_discrepancy,
     plot_effects,
     plot_levels,
     plot_predictive,
@@ -19,6 +20,7 @@ from skinbayes.plot import (
     plot_residuals,
     plot_trace,
 )
+from skinbayes.plot.discrepancy import curves_of
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.profile import profile_abscissas
 from skinbayes.plot.rows import group_columns, row_predictions, telling_columns, varying
@@ -86,6 +88,7 @@ def drawings(fit: Fit) -> list[Drawing]:
     return [
         *_data(fit),
         _predictive(fit),
+        *([DISCREPANCY] if curves_of(fit) else []),
         *(
             []
             if problem is None
@@ -121,6 +124,14 @@ def _predictive(fit: Fit) -> Drawing:
         "scatter included: dark for the middle half, light for 90 %. A model that fits has about nine dots in ten on its "
         f"bars.{panels}",
     )  # fmt: skip
+
+
+DISCREPANCY = Drawing(
+    "discrepancy", plot_discrepancy, "What the theory misses",
+    "Smooth curves by which the data differ from the theory, with their ranges.",
+    "The line is the median of what the theory misses, bands hold half and 90 % of the posterior. Its shape counts: a height "
+    "that all of the curve shares cannot be told from the parameters, and is what makes the bands wide.",
+)  # fmt: skip
 
 
 TRACE = Drawing(

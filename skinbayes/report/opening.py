@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.files.noise_block import NOISE_PARAMETERS
+from skinbayes.files.scatter_block import SCATTER_PARAMETERS
 from skinbayes.phrases import and_list
 from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.predictive import observables, observed_values
@@ -30,7 +31,7 @@ def data_name(fit: Fit) -> str:
 
 def is_scatter(label: str) -> bool:
     """Whether a parameter describes scatter or effects of groups, not the skin."""
-    return label.partition("[")[0] in (*NOISE_PARAMETERS, "group_scale")
+    return label.partition("[")[0] in (*NOISE_PARAMETERS, *SCATTER_PARAMETERS)
 
 
 def question(fit: Fit) -> str:

@@ -9,6 +9,7 @@ from skinbayes.atomic import write_atomically
 from skinbayes.errors import cannot_write
 from skinbayes.plot.predictive import observed_values
 from skinbayes.report import opening, quality, sentences, tables
+from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.markup import links, symbols
@@ -106,7 +107,10 @@ def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[s
         "derived": shown,
         "derived_folded": folded,
         "pictures": drawn,
-        "figures": [key for key in list(drawn)[1:] if not (groups and key == "effects")],
+        "figures": [
+            key for key in list(drawn)[1:] if key != "discrepancy" and not (groups and key == "effects")
+        ],
+        "misses": discrepancy_sentences(fit),
         "groups": groups,
         "effects": effect_rows(fit),
         "validity": validity_sentences(fit),

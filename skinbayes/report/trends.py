@@ -80,7 +80,24 @@ def worst(fit: Fit) -> dict[str, Trend]:
 
 def trend_sentences(fit: Fit) -> list[str]:
     """One sentence for each observable whose residuals follow a column as those of the model hardly ever do."""
-    return [_said(fit, name, trend) for name, trend in worst(fit).items()]
+    found = worst(fit)
+    said = [_said(fit, name, trend) for name, trend in found.items()]
+    return said + [remedy for name, trend in found.items() if (remedy := _remedy(fit, name, trend.column))]
+
+
+def _remedy(fit: Fit, observable: str, column: str) -> str:
+    """What to put into the model file against a trend along a column; nothing where it cannot be said there, or is already."""
+    noise = fit.provenance.get("noise", {}).get(observable)
+    usable = noise is not None and noise_family(str(noise)).closed_form_groups
+    if (
+        len(observables(fit)) > 1
+        or not usable
+        or any("correlat" in n or "discrepancy_s" in n for n in fit.names)
+    ):
+        return ""
+    curve = f'[discrepancy] with along = "{column}", a smooth curve that the theory may miss'
+    memory = f'[noise.correlation] with along = "{column}", noise whose neighbours are alike'
+    return f"What the model file can say to that: {f'{memory}; or ' if column in (ORDER, 'time') else ''}{curve}."
 
 
 def _said(fit: Fit, observable: str, trend: Trend) -> str:

@@ -168,13 +168,12 @@ class _Rounds:
             return self.mixture.refitted(self.positions, weights)
         # as many components as they can tell; a draw chosen twice is in one half only
         part = rng.random(count) < 0.5
-        points = []
-        for chosen in (part, ~part):
-            places = rng.choice(
-                count, size=min(POINTS, count // 2), p=weights * chosen / weights[chosen].sum()
-            )
-            points.append(self.positions[places])
-        return fit_mixture(*points, rng)
+        first, second = (self._chosen(weights * chosen, rng) for chosen in (part, ~part))
+        return fit_mixture(first, second, rng)
+
+    def _chosen(self, weights: FloatArray, rng: np.random.Generator) -> FloatArray:
+        size = min(POINTS, len(weights) // 2)
+        return np.asarray(self.positions[rng.choice(len(weights), size=size, p=weights / weights.sum())])
 
 
 def _widened(mixture: StudentMixture) -> StudentMixture:

@@ -141,7 +141,7 @@ def condition_effects(
     complement[:, diagonal, diagonal] += 1.0
     halved = coupling / np.sqrt(pivots)[:, :, None]
     complement -= np.matmul(np.swapaxes(halved, 1, 2), halved)
-    factor, sound = _cholesky(complement)
+    factor, sound = lower_factors(complement)
     inverse = np.asarray(np.linalg.inv(factor), dtype=float)
 
     target = scale * projection
@@ -163,7 +163,7 @@ def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
     return np.matmul(matrices, np.ascontiguousarray(vectors)[:, :, None])[:, :, 0]
 
 
-def _cholesky(matrices: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+def lower_factors(matrices: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Lower factors of a stack of I + (positive semidefinite), and which of them are right; the unit matrix for the others."""
     unit = np.eye(matrices.shape[-1])
     sound: NDArray[np.bool_] = np.all(np.isfinite(matrices), axis=(-2, -1))

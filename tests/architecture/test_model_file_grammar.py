@@ -49,6 +49,8 @@ SECTION_OF = {
     modelschema.DerivedBlock: "`[derived.NAME]`",
     modelschema.GridBlock: "`[conditions]`",
     modelschema.GroupBlock: "`[groups.COLUMN]`",
+    modelschema.DiscrepancyBlock: "`[discrepancy]`",
+    modelschema.CorrelationBlock: "`[noise.correlation]`",
     modelschema.CovariateBlock: "`[covariates.NAME]`",
     modelschema.RheologyBlock: "`[rheology]`",
 }
@@ -74,7 +76,7 @@ def test_priors() -> None:
 
 
 def test_noise() -> None:
-    assert sorted(names("`[noise]`")) == sorted(["family", *noise_parameter_names()])
+    assert sorted(names("`[noise]`")) == sorted(["family", "correlation", *noise_parameter_names()])
     rows = first_column("`[noise]`", 1)
     assert [row[0].strip("`") for row in rows] == list(NOISE_FAMILIES)
     for name, _, _, unit in rows:
@@ -111,6 +113,7 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
         known |= set(block.model_fields)
     known |= {
         "by",
+        "correlation",
         "family",
         "fixed",
         "same_as",
@@ -165,6 +168,12 @@ noise = { family = "lognormal", noise_scale = 0.1 }
         return
     if "groups" in example or "covariates" in example:
         data = data.replace("adams2007-forearm-glass", "fehlberg2025-finger-stribeck")
+    if "discrepancy" in example or "noise" in example:
+        rows = [f"{i},{0.01 * 2.0**i},8,0.{3 + i % 2}" for i in range(9)]
+        header = "time [s],normal_force [N],sphere_radius [mm],friction_coefficient [1]"
+        (tmp_path / "mine.csv").write_text("\n".join([header, *rows]), encoding="utf-8")
+        data = 'data = { file = "mine.csv", observable = "friction_coefficient" }'
+        block = '[noise]\nfamily = "lognormal"\nnoise_scale = 0.1\n' + block
     grid = "conditions" in example
     text = base.replace("FORWARD", "contact-area" if grid else "friction").replace(
         "DATA", "" if grid else data

@@ -98,9 +98,10 @@ def load_series(exponent: float) -> sb.Fit:
 
 def test_a_load_series_that_the_theory_does_not_follow_is_no_good_fit():
     fit = load_series(-0.15)
-    (said,) = trend_sentences(fit)
+    said, remedy = trend_sentences(fit)
     assert said.startswith("μ falls along normal force as this model cannot: on average the data lie ")
     assert "above the model in the lower third" in said and "below it in the upper third" in said
+    assert '[discrepancy] with along = "normal_force"' in remedy
     assert quality.misfit(fit) and quality.verdict(fit)[0] == "The model misses a trend."
     found = digest(fit)["trends"]["friction_coefficient"]
     assert "normal_force" in {check["column"] for check in found}
