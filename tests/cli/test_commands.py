@@ -156,7 +156,8 @@ def test_fit_for_people_and_again(runs, capsys, monkeypatch):
 def test_not_converged_is_said_loudly(runs, capsys, monkeypatch):
     folder, _ = runs
     monkeypatch.chdir(folder)
-    words = ("fit", "forearm-glass", "--seed", "3", "--ess", "1000000", "--max-steps", "100")
+    words = ("fit", "forearm-glass", "--seed", "3", "--ess", "1000000", "--max-steps", "100",
+             "--engine-option", "importance=false")  # fmt: skip
     document = run(capsys, *words, "-o", "short", "--json")
     assert document.status == 3
     assert document.document()["converged"] is False and "Not converged" in document.document()["verdict"]

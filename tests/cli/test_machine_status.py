@@ -17,7 +17,7 @@ from small_models import FINGER, write_model
 
 from skinbayes.fit import load_fit
 
-LONG = ("--seed", "5", "--ess", "20000", "--json")
+LONG = ("--seed", "5", "--ess", "20000", "--engine-option", "importance=false", "--json")
 
 
 def model(folder: Path, name: str = "mine", stress: int = 10) -> Path:

@@ -60,7 +60,9 @@ class Page(HTMLParser):
 @cache
 def short_fit() -> Fit:
     """Enough draws to show what was learnt, by far not as many as were asked for."""
-    return sample(load_problem("forearm-glass"), ess=1e6, max_steps=300, ensembles=2, walkers=64)
+    return sample(
+        load_problem("forearm-glass"), ess=1e6, max_steps=300, ensembles=2, walkers=64, importance=False
+    )
 
 
 def converged(fit: Fit) -> Fit:

@@ -11,7 +11,15 @@ from small_models import two_parameters
 from skinbayes.fit import Fit, sample
 from skinbayes.problem import Problem
 
-SMALL = {"seed": 5, "ess": 1e6, "walkers": 16, "ensembles": 2, "block_steps": 50, "max_steps": 200}
+SMALL = {
+    "seed": 5,
+    "ess": 1e6,
+    "walkers": 16,
+    "ensembles": 2,
+    "block_steps": 50,
+    "max_steps": 200,
+    "importance": False,
+}
 """Four blocks of steps, never converged."""
 
 

@@ -16,7 +16,7 @@ from skinbayes.sampling.stopping import judge
 def made(positions) -> Chains:
     """A run with given steps ``(E, S, W, D)``."""
     names = tuple(f"x{index}" for index in range(positions.shape[-1]))
-    report = judge(positions, names, SamplerOptions(seed=1))
+    report = judge(positions, names, SamplerOptions(importance=False, seed=1))
     return Chains(names, positions, np.zeros(positions.shape[:-1]), report, 0, 0, np.full(len(names), np.nan))
 
 
@@ -56,6 +56,8 @@ def test_a_ridge_and_quantities_that_are_not_sampled() -> None:
 
 
 def test_too_few_steps() -> None:
-    found = cause(run_ensembles(UnitGaussian(2), SamplerOptions(seed=1, max_steps=200, ess=1e6)))
+    found = cause(
+        run_ensembles(UnitGaussian(2), SamplerOptions(importance=False, seed=1, max_steps=200, ess=1e6))
+    )
     assert found.apart == 0
     assert found.partner is None

@@ -18,7 +18,15 @@ from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.store import SampleStore
 
-SHORT = {"seed": 3, "walkers": 16, "ensembles": 3, "block_steps": 20, "max_steps": 80, "ess": 1e6}
+SHORT = {
+    "seed": 3,
+    "walkers": 16,
+    "ensembles": 3,
+    "block_steps": 20,
+    "max_steps": 80,
+    "ess": 1e6,
+    "importance": False,
+}
 TARGET = UnitGaussian(2)
 
 
@@ -78,7 +86,9 @@ def killed_once_while_sampling(moment):
         if progress.steps == 10:
             thread.start()
 
-    options = SamplerOptions(seed=9, walkers=8, ensembles=2, block_steps=10, max_steps=100, ess=1e9, cores=2)
+    options = SamplerOptions(
+        importance=False, seed=9, walkers=8, ensembles=2, block_steps=10, max_steps=100, ess=1e9, cores=2
+    )
     chains = run_ensembles(Slow(2), options, progress=told)
     thread.join()
     return chains, len(killed)
@@ -87,7 +97,10 @@ def killed_once_while_sampling(moment):
 @pytest.mark.slow
 def test_killed_at_random_moments():
     whole = run_ensembles(
-        Slow(2), SamplerOptions(seed=9, walkers=8, ensembles=2, block_steps=10, max_steps=100, ess=1e9)
+        Slow(2),
+        SamplerOptions(
+            importance=False, seed=9, walkers=8, ensembles=2, block_steps=10, max_steps=100, ess=1e9
+        ),
     )
     moments = random.Random(1)
     deaths = 0

@@ -25,7 +25,7 @@ from skinbayes.sampling.starts import initial_states
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
-SHORT = {"max_steps": 60, "block_steps": 20, "walkers": 24, "ensembles": 3}
+SHORT = {"max_steps": 60, "block_steps": 20, "walkers": 24, "ensembles": 3, "importance": False}
 
 
 def same(first, second):
@@ -183,7 +183,8 @@ def test_ctrl_c_in_a_terminal_reaches_workers_quietly(tmp_path):
         "    print(progress.steps, flush=True)\n"
         "if __name__ == '__main__':\n"
         "    try:\n"
-        "        run_ensembles(Slow(2), SamplerOptions(seed=1, cores=2, block_steps=5, walkers=8), progress=told)\n"
+        "        options = SamplerOptions(importance=False, seed=1, cores=2, block_steps=5, walkers=8)\n"
+        "        run_ensembles(Slow(2), options, progress=told)\n"
         "    except SamplingInterrupted:\n"
         "        sys.exit(130)\n"
     )
@@ -208,7 +209,7 @@ def test_ctrl_c_in_a_terminal_reaches_workers_quietly(tmp_path):
 
 
 def test_draws_are_thinned_and_in_order_of_time():
-    chains = run_ensembles(UnitGaussian(2), SamplerOptions(seed=2))
+    chains = run_ensembles(UnitGaussian(2), SamplerOptions(importance=False, seed=2))
     positions, log_density = chains.draws()
     stride = chains.thinning()
     assert stride == np.ceil(chains.report.tau.max())
@@ -254,4 +255,4 @@ def test_options_out_of_range_are_named(option, value):
 
 def test_too_few_walkers_for_the_dimension():
     with pytest.raises(InputError, match="walkers: 8 found, at least 10 expected"):
-        run_ensembles(UnitGaussian(5), SamplerOptions(seed=1, walkers=8))
+        run_ensembles(UnitGaussian(5), SamplerOptions(importance=False, seed=1, walkers=8))

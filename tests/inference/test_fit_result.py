@@ -18,8 +18,8 @@ from skinbayes.fit import Fit, load_fit, sample
 from skinbayes.problem import load_problem
 
 ROOT = Path(__file__).resolve().parents[2]
-SMALL = {"seed": 5, "ess": 1000, "walkers": 32}
-TINY = {"seed": 1, "ess": 50, "walkers": 32, "max_steps": 200}
+SMALL = {"seed": 5, "ess": 1000, "walkers": 32, "importance": False}
+TINY = {"seed": 1, "ess": 50, "walkers": 32, "max_steps": 200, "importance": False}
 
 
 @pytest.fixture(scope="module")
@@ -243,7 +243,7 @@ def test_a_damaged_result_is_refused(fit: Fit, tmp_path: Path) -> None:
 
 def test_a_short_run_is_kept_and_says_so(tmp_path: Path) -> None:
     problem, run = two_parameters(tmp_path), tmp_path / "run"
-    short = sample(problem, seed=1, ess=1e6, max_steps=200, directory=run)
+    short = sample(problem, seed=1, ess=1e6, max_steps=200, directory=run, importance=False)
     assert not short.converged
     assert "Not converged after 200 steps" in short.provenance["sampling"]["verdict"]
     assert "1000000 is asked for" in short.provenance["sampling"]["verdict"]
@@ -295,7 +295,7 @@ def test_two_processes_give_the_same_draws(fit: Fit) -> None:
 
 
 def test_another_seed_gives_other_draws(fit: Fit) -> None:
-    other = sample(load_problem("forearm-glass"), seed=6, ess=1000, walkers=32)
+    other = sample(load_problem("forearm-glass"), seed=6, ess=1000, walkers=32, importance=False)
     assert not np.array_equal(other.draws("rms_height"), fit.draws("rms_height"))
     for label in fit.names:
         assert np.median(other.draws(label)) == pytest.approx(np.median(fit.draws(label)), rel=0.1)
@@ -323,7 +323,15 @@ def test_another_run_in_the_directory_is_never_touched(fit: Fit, directory: Path
     with pytest.raises(FingerprintMismatch, match="holds a run of 'forearm-glass'"):
         sample(other, directory=directory, resume=True, **SMALL)
     with pytest.raises(FingerprintMismatch, match="seed is 5 there and 6 here"):
-        sample(load_problem("forearm-glass"), directory=directory, resume=True, seed=6, ess=1000, walkers=32)
+        sample(
+            load_problem("forearm-glass"),
+            directory=directory,
+            resume=True,
+            seed=6,
+            ess=1000,
+            walkers=32,
+            importance=False,
+        )
     assert contents(directory) == before
     unfinished = tmp_path / "unfinished"
     shutil.copytree(directory, unfinished)

@@ -51,7 +51,7 @@ def largest_error(chains, target):
     ids=["gaussian-2", "gaussian-5", "gaussian-10", "banana"],
 )
 def test_default_moves_sample_known_targets(target, ess):
-    chains = run_ensembles(target, SamplerOptions(seed=11, ess=ess))
+    chains = run_ensembles(target, SamplerOptions(importance=False, seed=11, ess=ess))
     assert chains.converged
     assert largest_error(chains, target) < LIMIT
 
@@ -62,14 +62,14 @@ def test_default_moves_sample_known_targets(target, ess):
     ids=["gaussian-2", "gaussian-5", "gaussian-10", "banana"],
 )
 def test_moves_for_few_walkers_sample_known_targets(target, ess):
-    chains = run_ensembles(target, SamplerOptions(seed=11, ess=ess, expensive=True))
+    chains = run_ensembles(target, SamplerOptions(importance=False, seed=11, ess=ess, expensive=True))
     assert chains.converged and chains.positions.shape[2] == 64
     assert largest_error(chains, target) < LIMIT
 
 
 def test_banana_moments():
     """x1 = z + bend·(x0² − 1) has mean 0, variance 1 + 2·bend², where z and x0 are standard normal."""
-    chains = run_ensembles(Banana(2, bend=0.5), SamplerOptions(seed=3, ess=8_000))
+    chains = run_ensembles(Banana(2, bend=0.5), SamplerOptions(importance=False, seed=3, ess=8_000))
     bent = chains.positions[:, chains.kept, :, 1]
     assert bent.mean() == pytest.approx(0.0, abs=4 * standard_error(bent))
     assert (bent**2).mean() == pytest.approx(1.5, abs=4 * standard_error(bent**2))
@@ -78,7 +78,9 @@ def test_banana_moments():
 
 def test_the_same_test_catches_a_biased_move():
     target = UnitGaussian(5)
-    chains = run_ensembles(target, SamplerOptions(seed=11, ess=1e9, max_steps=300), moves=snooker_mixture)
+    chains = run_ensembles(
+        target, SamplerOptions(importance=False, seed=11, ess=1e9, max_steps=300), moves=snooker_mixture
+    )
     assert largest_error(chains, target) > LIMIT
     assert chains.report.r_hat.max() < 1.02  # R-hat does not see the bias
 
@@ -90,7 +92,7 @@ def test_claimed_effective_sample_size_is_the_real_one(dimension):
     target = UnitGaussian(dimension, spread=10.0, shift=8.0)
     ratios = []
     for seed in range(40):
-        chains = run_ensembles(target, SamplerOptions(seed=seed))
+        chains = run_ensembles(target, SamplerOptions(importance=False, seed=seed))
         mean = chains.positions[:, chains.kept].mean(axis=(0, 1, 2))
         ratios.append(mean**2 * chains.report.ess_bulk)
     # chi-square of 40·dimension values about 1: five standard deviations

@@ -40,7 +40,7 @@ EXACT = {
 def independent_draws(problem, seed: int) -> np.ndarray:
     """Draws an autocorrelation time apart, from the prior alone, in SI."""
     target = PosteriorTarget(problem, use_likelihood=False)
-    chains = run_ensembles(target, SamplerOptions(seed=seed, ess=2500))
+    chains = run_ensembles(target, SamplerOptions(importance=False, seed=seed, ess=2500))
     assert chains.converged
     positions, _ = chains.draws()
     flat = positions.reshape(-1, positions.shape[-1])

@@ -22,7 +22,15 @@ from skinbayes.sampling.store import SampleStore
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 TARGET = UnitGaussian(3)
-SHORT = {"seed": 4, "walkers": 24, "ensembles": 2, "block_steps": 20, "max_steps": 100, "ess": 1e6}
+SHORT = {
+    "seed": 4,
+    "walkers": 24,
+    "ensembles": 2,
+    "block_steps": 20,
+    "max_steps": 100,
+    "ess": 1e6,
+    "importance": False,
+}
 
 
 def same(first, second):
@@ -114,16 +122,20 @@ def test_a_converged_run_is_returned_at_once_and_continued_for_more(tmp_path):
             Counting.calls += 1
             return super().log_density(position)
 
-    first = run_ensembles(Counting(2), SamplerOptions(seed=1, walkers=40), store=SampleStore(tmp_path))
+    first = run_ensembles(
+        Counting(2), SamplerOptions(importance=False, seed=1, walkers=40), store=SampleStore(tmp_path)
+    )
     assert first.converged
     Counting.calls = 0
     again = run_ensembles(
-        Counting(2), SamplerOptions(seed=1, walkers=40), store=SampleStore(tmp_path, resume=True)
+        Counting(2),
+        SamplerOptions(importance=False, seed=1, walkers=40),
+        store=SampleStore(tmp_path, resume=True),
     )
     assert Counting.calls == 0
     assert same(first, again)
     assert again.report.sentence() == first.report.sentence()
-    more = SamplerOptions(seed=1, walkers=40, ess=1.5 * first.report.ess_bulk.min())
+    more = SamplerOptions(importance=False, seed=1, walkers=40, ess=1.5 * first.report.ess_bulk.min())
     longer = run_ensembles(Counting(2), more, store=SampleStore(tmp_path, resume=True))
     assert longer.converged
     assert longer.steps > first.steps
@@ -178,7 +190,9 @@ def killed_and_resumed(folder, cores, kills, seed):
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=60)
         survived.append(begun)
-    options = SamplerOptions(seed=9, walkers=8, ensembles=2, block_steps=2, max_steps=200, ess=1e9)
+    options = SamplerOptions(
+        importance=False, seed=9, walkers=8, ensembles=2, block_steps=2, max_steps=200, ess=1e9
+    )
     store = SampleStore(steps, resume=True)
     target = Slow(2)
     resumed = run_ensembles(target, options, store=store)

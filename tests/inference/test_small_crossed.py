@@ -139,7 +139,11 @@ def test_progress_of_a_run_that_needs_more_draws_tells_the_time_to_go() -> None:
     from sampling_targets import UnitGaussian
 
     told = []
-    run_ensembles(UnitGaussian(2), SamplerOptions(seed=1, ess=60_000, max_steps=2000), progress=told.append)
+    run_ensembles(
+        UnitGaussian(2),
+        SamplerOptions(importance=False, seed=1, ess=60_000, max_steps=2000),
+        progress=told.append,
+    )
     collecting = [p for p in told if p.phase == "collecting"]
     assert collecting and told[-1].phase == "done"
     for progress in collecting:

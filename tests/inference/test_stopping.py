@@ -37,7 +37,7 @@ def chains(steps, tau, seed=0, walkers=64, dimension=2):
 
 def verdict(positions, **options):
     names = tuple("ab"[: positions.shape[-1]])
-    return judge(positions, names, SamplerOptions(seed=0, **options))
+    return judge(positions, names, SamplerOptions(importance=False, seed=0, **options))
 
 
 # numbers
@@ -232,7 +232,7 @@ def test_checks_come_at_whole_blocks_and_ever_further_apart():
 
 
 def test_runs_in_two_modes_do_not_converge():
-    options = SamplerOptions(seed=1, max_steps=400, walkers=64)
+    options = SamplerOptions(importance=False, seed=1, max_steps=400, walkers=64)
     inside = run_ensembles(TwoModes(2), options).report
     assert inside.r_hat.max() < 1.01  # every ensemble sits half and half in both
     assert any("single walkers disagree about x0" in sentence for sentence in inside.missing)
@@ -241,13 +241,13 @@ def test_runs_in_two_modes_do_not_converge():
 
 
 def test_a_run_stops_as_soon_as_it_may():
-    chains = run_ensembles(UnitGaussian(2), SamplerOptions(seed=1))
+    chains = run_ensembles(UnitGaussian(2), SamplerOptions(importance=False, seed=1))
     assert chains.converged
     assert chains.steps == 200
 
 
 def test_a_run_that_may_not_stop_says_what_is_missing():
-    chains = run_ensembles(UnitGaussian(2), SamplerOptions(seed=1, ess=1e6, max_steps=250))
+    chains = run_ensembles(UnitGaussian(2), SamplerOptions(importance=False, seed=1, ess=1e6, max_steps=250))
     assert not chains.converged
     assert chains.steps == 200  # whole blocks
     assert "1000000 is asked for" in chains.report.sentence()

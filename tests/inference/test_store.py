@@ -19,7 +19,7 @@ from skinbayes.sampling.store import HEADER, SampleStore
 from skinbayes.sealed import content_digest, sealed, sealed_note
 
 IDENTITY = {"model or data (fingerprint)": "abc", "sampler option seed": 1}
-OPTIONS = SamplerOptions(seed=1, ensembles=2, walkers=8, block_steps=5, max_steps=10)
+OPTIONS = SamplerOptions(importance=False, seed=1, ensembles=2, walkers=8, block_steps=5, max_steps=10)
 
 
 def block(seed):

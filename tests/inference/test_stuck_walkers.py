@@ -46,7 +46,7 @@ def test_left_behind_is_far_below_the_median() -> None:
 
 @pytest.fixture(scope="module")
 def chains():
-    return run_ensembles(Pit(), SamplerOptions(seed=3, max_steps=3000))
+    return run_ensembles(Pit(), SamplerOptions(importance=False, seed=3, max_steps=3000))
 
 
 def test_a_run_with_walkers_in_a_pit_converges_to_the_peak(chains) -> None:
@@ -63,16 +63,16 @@ def test_a_run_with_walkers_in_a_pit_converges_to_the_peak(chains) -> None:
 def test_pieces_and_cores_give_the_same_draws(chains, tmp_path) -> None:
     from skinbayes.sampling.store import SampleStore
 
-    options = SamplerOptions(seed=3, max_steps=200)
+    options = SamplerOptions(importance=False, seed=3, max_steps=200)
     run_ensembles(Pit(), options, store=SampleStore(tmp_path / "steps"))
     store = SampleStore(tmp_path / "steps", resume=True)
-    resumed = run_ensembles(Pit(), SamplerOptions(seed=3, max_steps=3000), store=store)
+    resumed = run_ensembles(Pit(), SamplerOptions(importance=False, seed=3, max_steps=3000), store=store)
     assert_array_equal(resumed.positions, chains.positions)
     assert resumed.report.burn_in == chains.report.burn_in
 
 
 def test_without_stuck_walkers_nothing_changes() -> None:
-    run = run_ensembles(Pit(pit=False), SamplerOptions(seed=4, max_steps=400, ess=1e9))
+    run = run_ensembles(Pit(pit=False), SamplerOptions(importance=False, seed=4, max_steps=400, ess=1e9))
     low = [left_behind(run.log_density[e, step], 3).any() for e in range(4) for step in range(99, 400, 100)]
     assert not any(low)
     assert run.report.burn_in <= 200
