@@ -17,6 +17,10 @@ from skinbayes.sampling.target import Target
 FIRST_ATTEMPT = 25
 """Steps after which importance sampling is tried for the first time; then each time the run is 30 % longer."""
 
+IN_ANY_CASE = 100
+"""Steps after which a proposal is fitted although the ensembles disagree more: they may be in different modes for good, and only
+weighted draws tell how much either counts."""
+
 AFTER_REFUSAL = 3
 """Draws that were made and refused are not tried again before the run is so many times longer."""
 
@@ -69,7 +73,7 @@ class Finish:
         chains = positions.reshape(ensembles, -1, dimension)
         apart = [rank_r_hat(chains[..., column]) for column in range(dimension)]
         worst = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
-        if not apart[worst] <= FOUND:
+        if not apart[worst] <= FOUND and steps < IN_ANY_CASE:
             self.refused = f"the ensembles do not agree yet about {self._target.names[worst]}"
             return None
         explored = ensembles * steps * walkers
