@@ -27,6 +27,9 @@ LARGE = 6.5
 MOST_VECTOR_PANELS = 12
 """Figures with more panels are made of pixels."""
 
+MOST_VECTOR_BYTES = 1_000_000
+"""So are figures of which vectors would take more: with thousands of rows a page would hold tens of megabytes."""
+
 NARROW = "84 mm"
 """Width of the figures for phones, that of a column of a journal."""
 
@@ -49,10 +52,11 @@ def _picture(fit: Fit, drawing: Drawing) -> dict[str, Any]:
 def _image(figure: Figure) -> dict[str, Any]:
     """Media type (vectors, or pixels if there is much to draw), the image as base64, and its size on the page in pixels."""
     width, height = (float(size) for size in figure.get_size_inches())
-    pixels = len(figure.axes) > MOST_VECTOR_PANELS or width > LARGE
+    vectors = b"" if len(figure.axes) > MOST_VECTOR_PANELS or width > LARGE else _vectors(figure)
+    pixels = not 0 < len(vectors) <= MOST_VECTOR_BYTES
     return {
         "kind": "image/png" if pixels else "image/svg+xml",
-        "data": b64encode(_pixels(figure, width) if pixels else _vectors(figure)).decode("ascii"),
+        "data": b64encode(_pixels(figure, width) if pixels else vectors).decode("ascii"),
         "width": int(width * PAGE_DENSITY),
         "height": int(height * PAGE_DENSITY),
     }
