@@ -73,7 +73,8 @@ class Finish:
         chains = positions.reshape(ensembles, -1, dimension)
         apart = [rank_r_hat(chains[..., column]) for column in range(dimension)]
         worst = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
-        if not apart[worst] <= FOUND and steps < IN_ANY_CASE:
+        agree = bool(apart[worst] <= FOUND)
+        if not agree and steps < IN_ANY_CASE:
             self.refused = f"the ensembles do not agree yet about {self._target.names[worst]}"
             return None
         explored = ensembles * steps * walkers
@@ -89,6 +90,7 @@ class Finish:
             options.ess,
             np.random.default_rng([options.seed, 8, steps]),
             int(min(DRAWS_FOR_EXPLORED * explored, DRAWS_FOR_ESS * options.ess)),
+            agree,
         )
         if isinstance(found, ImportanceDraws):
             return found

@@ -20,6 +20,7 @@ from scipy.special import logsumexp, stdtrit
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.draws import weighted_quantiles
 from skinbayes.sampling.stopping import TAIL_FRACTION
+from skinbayes.sampling.stuck_walkers import left_behind
 from skinbayes.statistics.pareto import pareto_shape, smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
 
@@ -85,6 +86,7 @@ def importance_draws(
     ess: float,
     rng: np.random.Generator,
     least: int = 0,
+    agree: bool = True,
 ) -> ImportanceDraws | tuple[str, int]:
     """Draw from a target that ensembles have explored.
 
@@ -95,18 +97,29 @@ def importance_draws(
     evaluate : the target
     ess : effective sample size wanted in every coordinate; a quarter of it in the quantiles
     rng : source of all randomness
-    least : number of draws that are made at least: as many as the exploration took cost no more than that
+    least : number of draws that are made at least
+    agree : whether the ensembles agree; if not, the mixture is fitted to and examined with every second position of each
 
     Returns
     -------
     the draws, or in a sentence why there are none, and how many were tried
     """
-    points, densities = zip(*map(_visited, explored, explored_density), strict=True)
+    visited = list(map(_visited, explored, explored_density))
+    # a walker, or a whole ensemble, that is left behind in a place of next to no posterior is no draw of it
+    usual = max(float(np.median(density)) for _, density in visited)
+    near = [~left_behind(density, explored.shape[-1], usual) for _, density in visited]
+    points = [place[good] for (place, _), good in zip(visited, near, strict=True)]
+    densities = [density[good] for (_, density), good in zip(visited, near, strict=True)]
+    agree = agree and min(map(len, points)) > 0
     half = len(points) // 2
-    first, second = np.concatenate(points[:half]), np.concatenate(points[half:])
+    if agree:
+        first, second = np.concatenate(points[:half]), np.concatenate(points[half:])
+        held_out = np.concatenate(densities[half:])
+    else:
+        first, second = (np.concatenate([one[start::2] for one in points]) for start in (0, 1))
     mixture = fit_mixture(first, second, rng)
-    held_out = np.concatenate(densities[half:])
-    if (foreseen := _foreseen(held_out - mixture.log_density(second))) < WORTHWHILE:
+    # positions of ensembles in different modes are no draws of the target, and foresee nothing
+    if agree and (foreseen := _foreseen(held_out - mixture.log_density(second))) < WORTHWHILE:
         return f"a proposal would give {foreseen:.2g} effective draws for each evaluation", 0
     everything = np.concatenate([first, second])
     mixture = mixture.refitted(everything, np.ones(len(everything)))
@@ -120,7 +133,7 @@ def importance_draws(
         lacking = max(found.lacking(ess), least / count)
         if lacking <= 1.0 and (against := next(_against(found, explored, explored_density), None)) is None:
             return found
-        if number > 1 and count > (2.0 / WORTHWHILE) * found.ess.min():
+        if number > 4 and count > (2.0 / WORTHWHILE) * found.ess.min():
             break
         fitted = [side.refitted(rng) for side in sides]
         for side, mixture in zip(sides, reversed(fitted), strict=True):

@@ -26,20 +26,22 @@ times the dimension. Of a normal distribution in 8 dimensions a fraction of 1e-1
 need e^44 times the volume."""
 
 
-def left_behind(log_density: FloatArray, dimension: int) -> NDArray[np.bool_]:
+def left_behind(log_density: FloatArray, dimension: int, usual: float | None = None) -> NDArray[np.bool_]:
     """Which walkers are left behind.
 
     Parameters
     ----------
     log_density : of the walkers of one ensemble, shape ``(walkers,)``
     dimension : number of coordinates
+    usual : log-density of others that they are held against; the median of these if omitted
 
     Examples
     --------
     >>> left_behind(np.array([-3.0, -5.0, -4.0, -80.0]), 2).tolist()
     [False, False, False, True]
     """
-    low = np.median(log_density) - (DEPTH + DEPTH_PER_DIMENSION * dimension)
+    middle = np.median(log_density) if usual is None else usual
+    low = middle - (DEPTH + DEPTH_PER_DIMENSION * dimension)
     return np.asarray(log_density < low)
 
 

@@ -68,9 +68,10 @@ def hold_against_the_exact_answer(target, draws, within=4.5):
 @pytest.mark.parametrize(("dimension", "ridge"), [(2, 1.0), (3, 30.0), (5, 30.0)])
 def test_ensembles_against_the_exact_answer(dimension, ridge) -> None:
     target = LinearGaussian(dimension, ridge)
-    draws = drawn("emcee", target, ess=2000)
-    assert draws.diagnostics["converged"] and draws.log_weights is None and draws.log_evidence is None
-    hold_against_the_exact_answer(target, draws)
+    for importance in (False, True):
+        draws = drawn("emcee", target, ess=2000, importance=importance)
+        assert draws.diagnostics["converged"] and (draws.log_weights is not None) == importance
+        hold_against_the_exact_answer(target, draws)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +184,7 @@ def problem(tmp_path_factory: pytest.TempPathFactory):
 
 @pytest.fixture(scope="module")
 def ensembles(problem):
-    return sample(problem, seed=2, ess=2000, walkers=32)
+    return sample(problem, seed=2, ess=2000, walkers=32, importance=False)
 
 
 @pytest.fixture(scope="module")

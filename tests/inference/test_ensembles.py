@@ -243,7 +243,7 @@ def test_chains_are_frozen_and_travel(serial):
         ("ess", float("inf")),
         ("r_hat", 1.0),
         ("steps_over_tau", -50),
-        ("max_steps", 99),
+        ("max_steps", 24),
         ("block_steps", 0),
         ("cores", 0),
     ],

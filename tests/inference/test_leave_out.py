@@ -70,9 +70,16 @@ def test_few_data_are_left_out_exactly(shipped: dict[str, Fit]) -> None:
     assert result.models[1].elpd_difference == pytest.approx(-2.46, abs=0.15)
 
 
+def from_few_draws(fit: Fit) -> Fit:
+    """The same draws, said to be worth 20 independent ones: the limit of k is then 0.23."""
+    sampling = {**fit.provenance["sampling"], "ess_bulk": [20.0]}
+    return Fit(fit.groups, {**fit.provenance, "sampling": sampling})
+
+
 def test_weights_are_blank_where_a_term_is_unreliable(shipped: dict[str, Fit]) -> None:
-    result = compare(list(shipped.values()), refit=False)
-    assert all(model.unreliable_rows == 2 for model in result.models)
+    few = [from_few_draws(fit) for fit in shipped.values()]
+    result = compare(few, refit=False)
+    assert all(model.unreliable_rows > 0 for model in result.models)
     assert [model.weight for model in result.models] == [None, None]
     document = json.loads(json.dumps(result.to_dict()))
     assert document["models"][0]["weight"] is None and document["models"][0]["elpd_loo_se"] is None
@@ -90,8 +97,7 @@ def test_the_limit_of_k_is_that_of_the_effective_draws(water: Fit) -> None:
     many = score(fit).single
     largest = max(entry.pareto_k for entry in many.levels)
     assert 0.3 < largest < 0.65 and not many.unreliable
-    sampling = {**fit.provenance["sampling"], "ess_bulk": [20.0]}  # the limit is 0.23
-    few = score(Fit(fit.groups, {**fit.provenance, "sampling": sampling})).single
+    few = score(from_few_draws(fit)).single
     assert len(few.unreliable) == sum(entry.pareto_k > 1 - 1 / np.log10(20) for entry in many.levels) > 0
 
 
