@@ -36,7 +36,7 @@ PLOTS = [getattr(skinbayes.plot, name) for name in skinbayes.plot.__all__]
 @cache
 def short_fit(model: str) -> Fit:
     """A real fit, sampled much too briefly."""
-    return sample(load_problem(model), max_steps=100, ensembles=2, walkers=32)
+    return sample(load_problem(model), max_steps=100, ensembles=2, walkers=32, importance=False)
 
 
 def texts(figure: Figure) -> str:

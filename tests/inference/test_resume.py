@@ -164,7 +164,7 @@ from skinbayes.sampling.store import SampleStore
 
 if __name__ == "__main__":
     options = SamplerOptions(
-        seed=9, walkers=8, ensembles=2, block_steps=2, max_steps=200, ess=1e9, cores=int(sys.argv[2])
+        seed=9, walkers=8, ensembles=2, block_steps=2, max_steps=200, ess=1e9, cores=int(sys.argv[2]), importance=False
     )
     told = lambda progress: print(progress.steps, flush=True)
     run_ensembles(Slow(2), options, store=SampleStore(sys.argv[1], resume=True), progress=told)

@@ -123,7 +123,7 @@ def test_other_coordinates_are_another_run(tmp_path) -> None:
 def test_a_short_run_says_what_it_lacks_and_what_to_do(tmp_path) -> None:
     told = []
     problem = Crossed(2, 2, loads=(200,)).problem(tmp_path, seed=1)
-    fit = sample(problem, seed=1, max_steps=200, progress=told.append)
+    fit = sample(problem, seed=1, max_steps=200, progress=told.append, importance=False)
     verdict = fit.provenance["sampling"]["verdict"]
     assert not fit.converged
     assert "Cause: " in verdict and "What to do: " in verdict and "--resume --max-steps" in verdict

@@ -27,12 +27,12 @@ def start(*arguments: str | Path) -> subprocess.Popen[str]:
     )  # fmt: skip
 
 
-LONG = ("--seed", "5", "--ess", "20000", "--json")
+LONG = ("--seed", "5", "--ess", "20000", "--engine-option", "importance=false", "--json")
 
 
 @pytest.fixture(scope="module")
 def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Fit:
-    made = sample(two_parameters(tmp_path_factory.mktemp("whole")), seed=5, ess=20_000)
+    made = sample(two_parameters(tmp_path_factory.mktemp("whole")), seed=5, ess=20_000, importance=False)
     assert made.provenance["sampling"]["steps"] > 200  # so that the first block is not the last
     return made
 
