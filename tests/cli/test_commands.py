@@ -127,17 +127,15 @@ def test_fit_document(runs):
     folder, outcome = runs
     assert outcome.status == 0, outcome.errors
     document = outcome.document()
-    assert document["converged"] is True and document["seed"] == 3 and document["log_evidence"] is None
+    assert document["converged"] is True and document["seed"] == 3
+    # by quadrature, see test_leave_out.py
+    assert abs(document["log_evidence"] + 1.764) < 4 * document["log_evidence_error"] + 0.005 < 0.1
     assert Path(document["run"]) == folder / "first"
     assert set(document["parameters"]) == set(load_problem("forearm-glass").names)
     for values in document["parameters"].values():
-        assert {"unit", "median", "q05", "q95", "ess_bulk", "r_hat"} <= set(values)
-        assert (
-            values["q05"] < values["median"] < values["q95"]
-            and values["ess_bulk"] >= 500
-            and values["r_hat"] < 1.01
-        )
-    assert document["log_likelihood_evaluations"] > 10_000 and document["seconds"] > 0
+        assert {"unit", "median", "q05", "q95", "ess_bulk", "ess_tail"} == set(values)
+        assert values["q05"] < values["median"] < values["q95"] and values["ess_bulk"] >= 500
+    assert document["log_likelihood_evaluations"] > 5_000 and document["seconds"] > 0
 
 
 def test_fit_for_people_and_again(runs, capsys, monkeypatch):

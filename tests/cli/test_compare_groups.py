@@ -43,7 +43,9 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     for name, median in (("near", "0.4"), ("far", "0.1")):
         (folder / f"{name}.toml").write_text(MODEL.replace("MEDIAN", median), encoding="utf-8")
         problem = load_problem(folder / f"{name}.toml")
-        sample(problem, seed=2, ess=1000, walkers=32, max_steps=800, directory=folder / name)
+        sample(
+            problem, seed=2, ess=1000, walkers=32, max_steps=800, importance=False, directory=folder / name
+        )
         found.append(folder / name)
     return found
 
