@@ -149,8 +149,6 @@ def _of(inside: int, count: int) -> str:
 TOLD = (
     "{ensembles} independent ensembles of {walkers} walkers made {steps} steps each; the first {burn_in} were left out and "
     "one in {thinning} of the others kept.",
-    "{ensembles} independent ensembles of {walkers} walkers found the posterior in {steps} steps; {importance_draws} independent "
-    "draws by importance sampling took the place of their positions (Pareto k {pareto_k}, at most 0.5 is accepted).",
     "Importance sampling was tried and given up: {importance_refused}.",
     "{runs} independent runs of nested sampling with {live_points} live points each were merged.",
     "{acceptance} of the proposed moves were accepted.",
@@ -169,8 +167,6 @@ def told(fit: Fit) -> dict[str, str]:
     text = {name: str(value) for name, value in run.items() if isinstance(value, int | float | str) and value}
     if "acceptance_fraction" in run:
         text["acceptance"] = percent(float(np.mean(run["acceptance_fraction"])))
-    if "pareto_k" in run:
-        text["pareto_k"] = f"{run['pareto_k']:.2f}"
     if run.get("log_evidence"):
         value, error = run["log_evidence"]
         text["log_evidence"] = f"{value:.2f} ± {error:.2f}"

@@ -12,7 +12,7 @@ from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.evidence import bridge, combined
-from skinbayes.sampling.importance import ImportanceDraws, importance_draws
+from skinbayes.sampling.importance import LARGEST_SHAPE, ImportanceDraws, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import RunProgress
 from skinbayes.sampling.store import SampleStore
@@ -57,9 +57,9 @@ class EnsembleEngine:
 
 def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
     words = (
-        f"Converged: {chains.positions.shape[0]} ensembles found the posterior in {chains.steps} steps, and "
+        f"Converged: {chains.positions.shape[0]} ensembles of {chains.positions.shape[2]} walkers found the posterior in {chains.steps} steps, and "
         f"{len(found.positions)} independent draws by importance sampling have an effective sample size of at least "
-        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f}). A part of the posterior in less than 1/"
+        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted). A part of the posterior in less than 1/"
         f"{len(found.positions) // FOUND_WITH:d} of the space that they cover can have been missed."
     )
     diagnostics = _explored(chains, words) | {
