@@ -56,11 +56,12 @@ class EnsembleEngine:
 
 
 def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
+    ensembles, _, walkers, _ = chains.positions.shape
     words = (
-        f"Converged: {chains.positions.shape[0]} ensembles of {chains.positions.shape[2]} walkers found the posterior in {chains.steps} steps, and "
+        f"Converged: {ensembles} ensembles of {walkers} walkers found the posterior in {chains.steps} steps, and "
         f"{len(found.positions)} independent draws by importance sampling have an effective sample size of at least "
-        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted). A part of the posterior in less than 1/"
-        f"{len(found.positions) // FOUND_WITH:d} of the space that they cover can have been missed."
+        f"{found.ess.min():.0f} (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted). A part of the posterior "
+        f"in less than 1/{len(found.positions) // FOUND_WITH} of the space that they cover can have been missed."
     )
     diagnostics = _explored(chains, words) | {
         "missing": [],
