@@ -56,7 +56,7 @@ def datasets(as_json: bool) -> None:
 @click.argument("name")
 @json_option
 def show(name: str, as_json: bool) -> None:
-    """Show a model or a data set: text, priors, sources, provenance."""
+    """Show a model or a data set, with its sources."""
     from skinbayes.files.locate import shipped_names
 
     is_model = name in shipped_names("models") or name.endswith(".toml")

@@ -13,7 +13,7 @@ from skinbayes.cli.output import print_json, print_sentences, say
 @data_option
 @json_option
 def check(model: str, data: str | None, as_json: bool) -> None:
-    """Check a model before sampling: priors, and what the data tell.
+    """Check a model, and what its data can tell, before sampling.
 
     In words: units, priors, predictions, and which data identify which parameters.
     """

@@ -65,9 +65,8 @@ def grouped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "curve.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     (folder / "law.toml").write_text(LAW + SCATTER, encoding="utf-8")
     (folder / "null.toml").write_text(NULL + SCATTER, encoding="utf-8")
-    sample(
-        load_problem(folder / "law.toml"), directory=folder / "run", max_steps=100, ensembles=2, walkers=32
-    )
+    briefly = {"max_steps": 100, "ensembles": 2, "walkers": 32, "importance": False}
+    sample(load_problem(folder / "law.toml"), directory=folder / "run", **briefly)
     return folder / "run"
 
 

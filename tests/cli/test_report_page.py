@@ -22,7 +22,7 @@ from skinbayes.report import write_report
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 
-BRIEFLY = {"max_steps": 100, "ensembles": 2, "walkers": 32}
+BRIEFLY = {"max_steps": 100, "ensembles": 2, "walkers": 32, "importance": False}
 """Sampled much too briefly for anything but showing that a page can be made."""
 
 HOSTILE = "<script>alert(1)</script> \"double\" 'single' & <img src=x onerror=alert(2)>"

@@ -19,7 +19,8 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return fit.save(tmp_path_factory.mktemp("run") / "fit.nc")
 
 
-def test_text_has_a_row_for_each_prior_and_says_what_it_means(saved, capsys):
+def test_text_has_a_row_for_each_prior_and_says_what_it_means(saved, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "170")  # a table, which a narrow terminal has no room for
     done = run(capsys, "sensitivity", saved)
     assert done.status == 0 and done.errors == ""
     for name in (*load_problem("finger-water").names, "all together"):
