@@ -81,9 +81,9 @@ def sample(
     Examples
     --------
     >>> import skinbayes as sb
-    >>> fit = sb.sample(sb.load_problem("finger-water"), max_steps=100, ensembles=2, walkers=16)
-    >>> fit.converged, fit.provenance["sampling"]["steps"]
-    (False, 100)
+    >>> fit = sb.sample(sb.load_problem("finger-water"), seed=1, ess=500)
+    >>> fit.converged, fit.provenance["sampling"]["ensembles"]
+    (True, 4)
     """
     from skinbayes.sampling.engines import ENGINES, find_engine, options_for, register_engine
 

@@ -22,9 +22,9 @@ class Problem(StatisticalModel):
 
     Attributes
     ----------
-    spec, forward, free, fixed, conditions, dataset, observations, input_spread, groups, tables, flow_curves, settings, tied,
-    correlated : see
+    spec, forward, free, fixed, conditions, dataset, observations, input_spread, groups, tables, flow_curves, settings : see
         :class:`~skinbayes.problem.bound.BoundModel`
+    tied, correlated : see there too
 
     Examples
     --------

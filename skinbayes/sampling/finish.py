@@ -28,7 +28,7 @@ FOUND = 1.3
 """Largest R-hat of the ensembles, over the later half of their steps, at which a proposal is fitted to them: where they disagree
 a little more than they will, weighted draws tell who is right."""
 
-DRAWS_FOR_EXPLORED, DRAWS_FOR_ESS = 2.5, 8.0
+DRAWS_FOR_EXPLORED, DRAWS_FOR_ESS = 1.5, 8.0
 """Draws that are made at least for each position that was explored: they cost little more, and are worth far more. But no more
 than so many for each effective draw that was asked for."""
 
