@@ -85,7 +85,7 @@ CASES: dict[str, tuple[str, str, str, str]] = {
     "by a list": ("forearm-glass", 'by = "state"', "by = []", "parameters.young_modulus_layer.by: found []"),
     "by a table": ("forearm-glass", 'by = "state"', "by = { a = 1 }", "expected a label column"),
     "by a number": ("forearm-glass", 'by = "state"', "by = 3", "found 3"),
-    "groups without data": ("contact-area", "[conditions]", "[groups.person]\nscale = 1\n[conditions]", "no groups"),
+    "groups without data": ("contact-area", "[conditions]", "[groups.person]\nscale = 1\n[conditions]", "need data"),
     "label of no kind": ("drying-timing", 'counterface = [', 'counerface = [', "Did you mean 'counterface'"),
     "noise without size": ("finger-null", TINY, "noise_scale = { half_normal = 1e-308", "noise_scale between 1e-30"),
     "noise next to nothing": ("finger-null", TINY, "noise_scale = { half_normal = 1e-12", "noise is so small beside"),
