@@ -192,6 +192,11 @@ def more_than_kept(fit: Fit) -> str:
     kept = sizes["chain"] * sizes["draw"]
     if max(fit.provenance["sampling"].get("ess_bulk", [0.0])) <= kept:
         return ""
+    if "weighted_posterior" in fit.groups:
+        return (
+            f"Quantiles of parameters come from all weighted draws; {kept} of them, resampled to equal weight, are kept for "
+            "predictions and figures."
+        )
     return (
         f"Effective sample sizes (ESS) count all steps of the run; {kept} draws of them are kept, nearly independent, and all "
         "numbers here come from these."
