@@ -23,7 +23,7 @@ from skinbayes.fit.netcdf import MOST_GROUPS, result_image
 from skinbayes.problem import Problem, load_problem
 from skinbayes.sealed import DamagedFile, checked, content_digest, read_note, sealed, sealed_note
 
-SHORT = {"ess": 1e6, "max_steps": 300, "importance": False}
+SHORT = {"ess": 1e6, "max_steps": 300, "importance": False, "walkers": 16}
 INPUTS = ("model.toml", "data/data.csv", "data/provenance.toml", "run.json")
 
 
@@ -165,7 +165,19 @@ def test_a_damaged_run_resumes_to_the_same(
         (copy / name).write_bytes(content[: len(content) // 2] + b"?" + content[len(content) // 2 + 1 :])
     arguments = ["fit", str(problem.spec.path), "-o", str(copy), "--resume", "--json"]
     with pytest.raises(SystemExit) as ended:
-        main([*arguments, "--ess", "1000000", "--max-steps", "300", "--engine-option", "importance=false"])
+        main(
+            [
+                *arguments,
+                "--ess",
+                "1000000",
+                "--max-steps",
+                "300",
+                "--engine-option",
+                "importance=false",
+                "--engine-option",
+                "walkers=16",
+            ]
+        )
     output, errors = capsys.readouterr()
     assert ended.value.code == 3 and json.loads(output)["steps"] == 300
     # a result is written at the end of every run, and a lost last block leaves no trace to speak of
