@@ -148,19 +148,17 @@ class _Rounds:
     Attributes
     ----------
     mixture : what the next round is drawn from, but for a wide component
+    positions, log_density : all draws, and the target there
+    proposal, log_proposal : what all of them together were drawn from, and ln of its density there
     """
 
     def __init__(self, mixture: StudentMixture) -> None:
         self.mixture = mixture
         self.positions = np.empty((0, mixture.dimension))
         self.log_density = np.empty(0)
+        self.proposal, self.log_proposal = mixture, np.empty(0)
         self._proposals: list[StudentMixture] = []
         self._counts: list[int] = []
-
-    @property
-    def proposal(self) -> StudentMixture:
-        """What all draws together were drawn from."""
-        return StudentMixture.of(self._proposals, self._counts)
 
     def draw(self, count: int, evaluate: Evaluate, rng: np.random.Generator) -> None:
         proposal = _widened(self.mixture)
@@ -169,10 +167,12 @@ class _Rounds:
         self.log_density = np.append(self.log_density, evaluate(new))
         self._proposals.append(proposal)
         self._counts.append(count)
+        self.proposal = StudentMixture.of(self._proposals, self._counts)
+        self.log_proposal = self.proposal.log_density(self.positions)
 
     def refitted(self, rng: np.random.Generator) -> StudentMixture:
         """The mixture fitted anew to the draws."""
-        log_ratios = self.log_density - self.proposal.log_density(self.positions)
+        log_ratios = self.log_density - self.log_proposal
         weights = np.exp(log_ratios - log_ratios.max())
         count = len(weights)
         # draws with weights far above the others would teach the mixture themselves only
@@ -198,10 +198,8 @@ def _weighed(sides: tuple[_Rounds, _Rounds]) -> ImportanceDraws:
     proposals = (sides[0].proposal, sides[1].proposal)
     positions, log_density, log_proposal = (
         np.stack(pair, axis=1).reshape(-1, *pair[0].shape[1:])
-        for pair in (
-            [side.positions for side in sides],
-            [side.log_density for side in sides],
-            [one.log_density(side.positions) for one, side in zip(proposals, sides, strict=True)],
+        for pair in zip(
+            *((side.positions, side.log_density, side.log_proposal) for side in sides), strict=True
         )
     )
     log_weights, shape = smoothed(log_density - log_proposal)
