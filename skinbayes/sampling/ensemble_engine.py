@@ -48,8 +48,9 @@ class EnsembleEngine:
             return _weighted(chains, chains.importance)
         positions, log_density = chains.draws(DRAWS_PER_CHAIN)
         words = verdict(chains, target, options)
-        evidence = _evidence(chains, target, options) if options.importance and chains.converged else None
-        diagnostics = _diagnostics(chains, words)
+        asked = options.importance and chains.converged
+        evidence, spent = _evidence(chains, target, options) if asked else (None, 0)
+        diagnostics = _diagnostics(chains, words) | {"evaluations": chains.evaluations + spent}
         if chains.refused:
             diagnostics["importance_refused"] = chains.refused
         return Draws(positions, None, evidence, diagnostics, log_density)
@@ -74,8 +75,10 @@ def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
     return Draws(found.positions, found.log_weights, _bridged(chains, found), diagnostics, found.log_density)
 
 
-def _evidence(chains: Chains, target: Target, options: SamplerOptions) -> tuple[float, float] | None:
-    """ln Z and its error where walkers gave the draws; None if no proposal resembles the posterior."""
+def _evidence(
+    chains: Chains, target: Target, options: SamplerOptions
+) -> tuple[tuple[float, float] | None, int]:
+    """ln Z and its error where walkers gave the draws, None if no proposal resembles the posterior; and evaluations."""
     kept = chains.positions[:, chains.kept]
     density = Density(target)
     found = importance_draws(
@@ -86,7 +89,9 @@ def _evidence(chains: Chains, target: Target, options: SamplerOptions) -> tuple[
         np.random.default_rng([options.seed, 9]),
         EVIDENCE_DRAWS,
     )
-    return _bridged(chains, found) if isinstance(found, ImportanceDraws) else None
+    if isinstance(found, ImportanceDraws):
+        return _bridged(chains, found), len(found.positions)
+    return None, found[1]
 
 
 def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:

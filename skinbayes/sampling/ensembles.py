@@ -83,6 +83,8 @@ def run_ensembles(
     work = _Work(target, options.block_steps, moves)
     try:
         with sharing_out(work, min(options.cores, options.ensembles)) as crew:
+            for number in range(1, resumed):  # when the next attempt is due hangs on those before
+                finish.attempt(number * options.block_steps, partial(_joined, rounds[:number]), crew)
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
@@ -100,7 +102,10 @@ def run_ensembles(
                     if store is not None:
                         store.complete()
                     chains = _chains(target, options, rounds, report)
-                    return replace(chains, importance=accepted, refused=finish.refused)
+                    evaluations = chains.evaluations + finish.evaluations
+                    return replace(
+                        chains, importance=accepted, refused=finish.refused, evaluations=evaluations
+                    )
                 started = time.perf_counter()
                 blocks = crew(states)
                 spent += time.perf_counter() - started

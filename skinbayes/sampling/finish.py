@@ -46,12 +46,14 @@ class Finish:
     Attributes
     ----------
     refused : why draws were not accepted, the last time they were tried
+    evaluations : of the target for draws that were not accepted
     """
 
     def __init__(self, target: Target, options: SamplerOptions) -> None:
         self._target, self._options = target, options
         self._not_before = 0
         self.refused = ""
+        self.evaluations = 0
 
     def attempt(
         self, steps: int, joined: Callable[[str], FloatArray], crew: Callable[[Sequence[Any]], list[Any]]
@@ -95,5 +97,6 @@ class Finish:
         if isinstance(found, ImportanceDraws):
             return found
         self.refused, tried = found
+        self.evaluations += tried
         self._not_before = AFTER_REFUSAL * steps if tried > explored / 4 else 0
         return None

@@ -163,6 +163,32 @@ def test_one_seed_gives_the_same_draws_with_any_number_of_workers_and_when_resum
     assert whole.log_evidence == resumed.log_evidence
 
 
+def test_a_run_resumed_after_refused_draws_tries_when_it_would_have(tmp_path: Path, monkeypatch):
+    """A refusal that cost much puts the next attempt off; a resumed run knows of it, and counts what it cost."""
+    from skinbayes.sampling import finish
+
+    def at_first_refused(chains, *arguments):
+        fresh = chains.shape[1] < 16 * 25  # the later half of the first 25 steps
+        return ("too uneven", 10_000) if fresh else importance_draws(chains, *arguments)
+
+    monkeypatch.setattr(finish, "importance_draws", at_first_refused)
+    target = Known(normal, 4)
+    options = SamplerOptions(seed=5, ess=1000, walkers=16)
+    whole = EnsembleEngine().run(target, options)
+    assert whole.diagnostics["steps"] == 75
+    assert whole.diagnostics["evaluations"] > 10_000 + whole.log_weights.size
+
+    def stop(progress):
+        if progress.steps >= 50:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        EnsembleEngine().run(target, options, SampleStore(tmp_path / "steps"), stop)
+    resumed = EnsembleEngine().run(target, options, SampleStore(tmp_path / "steps", resume=True))
+    np.testing.assert_array_equal(whole.samples, resumed.samples)
+    assert whole.diagnostics["evaluations"] == resumed.diagnostics["evaluations"]
+
+
 def explored(rng, places, count=1500):
     """Independent draws of normal distributions about places, one ensemble each."""
     return np.array([place + rng.normal(size=(count, 2)) for place in places])
