@@ -6,6 +6,7 @@ from math import ceil, floor, isfinite, log10
 
 from skinbayes.phrases import number
 from skinbayes.units import format_quantity, parse_quantity
+from skinbayes.vocabulary import lookup
 
 
 def prefix_of(typical: float, unit: str) -> tuple[float, str]:
@@ -40,6 +41,18 @@ def quantity(value: float, unit: str, digits: int = 3) -> str:
         return number(value)
     factor, name = prefix_of(value, unit)
     return f"{number(value / factor, digits)} {name}".strip()
+
+
+def quantity_of(name: str, value: float) -> str:
+    """An SI value of a quantity by its name, in the unit that the vocabulary gives it; a bare number if it has none.
+
+    Examples
+    --------
+    >>> quantity_of("young_modulus_bulk", 2e4), quantity_of("friction_coefficient", 0.3)
+    ('20 kPa', '0.3')
+    """
+    known = lookup(name)
+    return quantity(value, known.unit if known else "1")
 
 
 def interval(low: float, high: float, unit: str, typical: float | None = None, joint: str = " to ") -> str:

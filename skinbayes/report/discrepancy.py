@@ -10,11 +10,10 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.phrases import percent
 from skinbayes.plot.discrepancy import Curve, curves_of
-from skinbayes.plot.numbers import interval, quantity
+from skinbayes.plot.numbers import interval, quantity, quantity_of
 from skinbayes.plot.predictive import observables
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report.trends import is_logarithmic
-from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -107,8 +106,7 @@ def _size(fit: Fit, value: float) -> str:
     name = observables(fit)[0]
     if is_logarithmic(fit, name):
         return percent(float(np.expm1(value)))
-    known = lookup(name)
-    return quantity(value, known.unit if known else "1")
+    return quantity_of(name, value)
 
 
 def _drifts(fit: Fit) -> list[str]:
@@ -118,14 +116,14 @@ def _drifts(fit: Fit) -> list[str]:
     series = [str(name) for name in group["series"].values]
     draws = np.asarray(group["drift"].values, dtype=float).reshape(-1, len(series))
     low, middle, high = np.quantile(draws, QUANTILES, axis=0)
-    logarithmic, (observable, *_) = is_logarithmic(fit, observables(fit)[0]), observables(fit)
-    known = lookup(observable)
+    observable = observables(fit)[0]
+    logarithmic = is_logarithmic(fit, observable)
 
     def shown(value: float) -> str:
         if logarithmic:
             change = float(np.expm1(value))
             return f"{'−' if change < 0 else '+'}{percent(abs(change))}"
-        return quantity(value, known.unit if known else "1")
+        return quantity_of(observable, value)
 
     order = np.argsort(-np.abs(middle))[:3]
     each = [

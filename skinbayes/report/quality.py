@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.phrases import and_list, number, percent, plural, sample_size
-from skinbayes.plot.numbers import fraction, quantity
+from skinbayes.plot.numbers import fraction, quantity_of
 from skinbayes.plot.predictive import (
     datum_names,
     observables,
@@ -17,7 +17,7 @@ from skinbayes.plot.predictive import (
 )
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.repeats import beyond_repeats, repeat_sentences
+from skinbayes.report.repeats import repeat_sentences
 from skinbayes.report.trends import is_logarithmic, trend_sentences
 from skinbayes.statistics.agreement import Agreement
 from skinbayes.statistics.agreement import examine as agreement_of
@@ -41,12 +41,12 @@ def examine(fit: Fit) -> Agreement:
 
 def misfit(fit: Fit) -> bool:
     """Whether single values, mean, scatter, a trend of the residuals or repeats speak against the model."""
-    return examine(fit).misfit or bool(trend_sentences(fit)) or bool(beyond_repeats(fit))
+    return examine(fit).misfit or bool(trend_sentences(fit)) or bool(repeat_sentences(fit)[0])
 
 
 def verdict(fit: Fit) -> list[str]:
     """Whether the model fits, in a few sentences; what only looks like a good fit is not praised."""
-    found, trends, beyond = examine(fit), trend_sentences(fit), beyond_repeats(fit)
+    found, trends, (beyond, allowed) = examine(fit), trend_sentences(fit), repeat_sentences(fit)
     follows = trends + beyond
     inside = (
         f"{found.wide} of {found.count} values lie in their 90 % ranges "
@@ -71,7 +71,7 @@ def verdict(fit: Fit) -> list[str]:
         ]
     else:
         said = [f"Single values, mean, scatter and trends do not speak against it: {inside}."]
-    said += [] if beyond else repeat_sentences(fit)
+    said += [] if beyond else allowed
     if group_columns(fit):
         many = and_list([plural(column) for column in group_columns(fit)])
         said.append(f"What is predicted knows the effects of the {many} measured.")
@@ -92,7 +92,7 @@ def free_scatter(fit: Fit) -> str:
     known, value = lookup(name), float(fit.quantiles("noise_scale", 0.5))
     if is_logarithmic(fit, name):
         return f"{percent(value)} of {known.symbol if known else spoken_name(name)}"
-    return quantity(value, known.unit if known else "1")
+    return quantity_of(name, value)
 
 
 def agreement(fit: Fit) -> list[str]:

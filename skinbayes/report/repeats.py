@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.phrases import percent
-from skinbayes.plot.numbers import quantity
+from skinbayes.plot.numbers import quantity_of
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.problem.deduplicated_rows import kinds
 from skinbayes.report.trends import is_logarithmic, residuals_of
@@ -54,14 +54,16 @@ def conditions(problem: Problem) -> NDArray[np.intp]:
     return kinds(columns, count)
 
 
-def repeat_sentences(fit: Fit) -> list[str]:
-    """One sentence for each observable with repeats: how they scatter, and whether that allows the misfit."""
-    return [_said(fit, name, one) for name, one in repeats(fit).items()]
+def repeat_sentences(fit: Fit) -> tuple[list[str], list[str]]:
+    """A sentence for each observable with repeats: how they scatter, and whether that allows the misfit.
 
-
-def beyond_repeats(fit: Fit) -> list[str]:
-    """Those of the sentences that speak against the model."""
-    return [_said(fit, name, one) for name, one in repeats(fit).items() if one.found]
+    Those that speak against the model, and the others.
+    """
+    against: list[str] = []
+    others: list[str] = []
+    for name, one in repeats(fit).items():
+        (against if one.found else others).append(_said(fit, name, one))
+    return against, others
 
 
 def _said(fit: Fit, observable: str, found: LackOfFit) -> str:
@@ -70,7 +72,7 @@ def _said(fit: Fit, observable: str, found: LackOfFit) -> str:
     logarithmic = is_logarithmic(fit, observable)
 
     def size(value: float) -> str:
-        return percent(value) if logarithmic else quantity(value, known.unit if known else "1")
+        return percent(value) if logarithmic else quantity_of(observable, value)
 
     chance = f"simulated data of the model miss them as far in {percent(found.probability)} of cases"
     return (

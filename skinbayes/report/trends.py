@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.phrases import percent
-from skinbayes.plot.numbers import quantity
+from skinbayes.plot.numbers import quantity_of
 from skinbayes.plot.predictive import observables, observed_values, predictive_draws
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.statistics.noise_families import noise_family
@@ -132,5 +132,4 @@ def _size(observable: str, residual: float, logarithmic: bool) -> str:
     side = "above" if residual > 0 else "below"
     if logarithmic:
         return f"{percent(abs(float(np.expm1(residual))))} {side}"
-    known = lookup(observable)
-    return f"{quantity(abs(residual), known.unit if known else '1')} {side}"
+    return f"{quantity_of(observable, abs(residual))} {side}"
