@@ -19,6 +19,7 @@ from skinbayes.cli.options import (
     settings_of,
 )
 from skinbayes.cli.output import EXIT_DONE, EXIT_INTERRUPTED, EXIT_NOT_CONVERGED, print_json, say
+from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MAX_STEPS, SEED
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,10 +29,14 @@ if TYPE_CHECKING:
 @click.command()
 @model_argument
 @data_option
-@number_option("--seed", 1, 0, "The same seed gives the same draws.")
-@number_option("--ess", 2000, 10, "Effective sample size wanted in every parameter.")
+@number_option("--seed", SEED, 0, "The same seed gives the same draws.")
+@number_option("--ess", EFFECTIVE_SAMPLE_SIZE, 10, "Effective sample size wanted in every parameter.")
 @number_option("--cores", 1, 1, "Worker processes; they do not change the draws.")
-@number_option("--max-steps", 10_000, 100, "Stop here, converged or not (emcee).")
+@click.option(
+    "--max-steps",
+    type=click.IntRange(100),
+    help=f"Stop here, converged or not (emcee).  [default: {MAX_STEPS}]",
+)
 @click.option(
     "--engine",
     default="emcee",
@@ -59,7 +64,7 @@ def fit(
     seed: int,
     ess: int,
     cores: int,
-    max_steps: int,
+    max_steps: int | None,
     engine: str,
     engine_pairs: tuple[str, ...],
     pairs: tuple[str, ...],
@@ -79,8 +84,9 @@ def fit(
 
     problem = load_problem(model, data=data, settings=settings_of(pairs))
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
-    options = {"max_steps": max_steps} if engine == "emcee" else {}
-    options |= _engine_options(engine_pairs)
+    options = _engine_options(engine_pairs)
+    if max_steps is not None:
+        options = {"max_steps": max_steps} | options
     try:
         with fit_progress() as (count, progress):
             result = sample(

@@ -6,12 +6,13 @@ import click
 
 from skinbayes.cli.options import data_option, json_option, model_argument, number_option
 from skinbayes.cli.output import MOST_ROWS, print_json, print_sentences, print_table
+from skinbayes.defaults import SEED
 
 
 @click.command()
 @model_argument
 @data_option
-@number_option("--seed", 1, 0, "Seed of the draws.")
+@number_option("--seed", SEED, 0, "Seed of the draws.")
 @number_option("--draws", 4000, 100, "Number of prior draws.", most=1_000_000)
 @json_option
 def prior(model: str, data: str | None, seed: int, draws: int, as_json: bool) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
 from skinbayes.errors import InputError
 from skinbayes.fit.assemble import assembled, require_data
 from skinbayes.fit.fit import Fit
@@ -19,14 +20,11 @@ if TYPE_CHECKING:
     from skinbayes.sampling.engines import Engine
     from skinbayes.sampling.progress import RunProgress
 
-DEFAULT_SEED = 1
-"""Seed when none is given: the same command gives the same draws."""
-
 
 def sample(
     problem: Problem,
-    seed: int = DEFAULT_SEED,
-    ess: float = 2000.0,
+    seed: int = SEED,
+    ess: float = EFFECTIVE_SAMPLE_SIZE,
     cores: int = 1,
     directory: str | Path | None = None,
     resume: bool = False,

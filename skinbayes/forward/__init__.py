@@ -32,9 +32,6 @@ __all__ = [
 
 _REGISTERED: dict[str, ForwardModel] = {}
 
-RETIRED = {f"{name}-delta": name for name in ("capillary-film", "drying", "drying-features", "humid-air")}
-"""Former names to the models that have an option in their place."""
-
 
 def forward_models() -> dict[str, ForwardModel]:
     """Return all forward models by name.
@@ -50,11 +47,6 @@ def forward_models() -> dict[str, ForwardModel]:
 def forward_model(name: str, where: str = "forward") -> ForwardModel:
     """Return the forward model called ``name``; :class:`InputError` naming all of them if there is none."""
     models = forward_models()
-    if name in RETIRED:
-        raise InputError(
-            f"{where}: '{name}' is now an option: write forward = \"{RETIRED[name]}\" and, in a table [options], "
-            'closure = "sharp"'
-        )
     if broken := installed_forward_models()[1].get(name):
         raise InputError(f"{where}: the forward model '{name}' is {broken}")
     if name not in models:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
+from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MAX_STEPS
 from skinbayes.errors import InputError
 
 DEFAULT_WALKERS = 128
@@ -39,7 +40,7 @@ class EngineOptions:
     """
 
     seed: int
-    ess: float = 2000.0
+    ess: float = EFFECTIVE_SAMPLE_SIZE
     cores: int = 1
     expensive: bool = False
 
@@ -85,7 +86,7 @@ class SamplerOptions(EngineOptions):
     walkers: int | None = None
     r_hat: float = 1.01
     steps_over_tau: float = 50.0
-    max_steps: int = 10_000
+    max_steps: int = MAX_STEPS
     block_steps: int = None  # type: ignore[assignment]  # filled in below
     importance: bool = True
 

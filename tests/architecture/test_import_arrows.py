@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 import pytest
 from source_tree import HEAVY, ROOT, Import, all_imports, floor_of, imports_of, modules, tree_of
 
-WORDS = {"errors", "arrays", "constants", "phrases", "vocabulary"}
+WORDS = {"errors", "arrays", "constants", "defaults", "phrases", "vocabulary"}
 FILES = {"atomic", "sealed"}
 PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
 STATISTICS = {"statistics", "sampling", "diagnose"}
@@ -21,6 +21,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "atomic": set(),
     "sealed": set(),
     "phrases": set(),
+    "defaults": set(),
     "synonyms": set(),
     "version": set(),
     "quantity": set(),
@@ -36,7 +37,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "lubrication": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
-    "sampling": {"errors", "arrays", *FILES, "statistics"},
+    "sampling": {"errors", "arrays", "defaults", *FILES, "statistics"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
     "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
@@ -67,7 +68,8 @@ HOMES: dict[str, set[str]] = {
     "h5py": {"sampling", "fit"},
     "jinja2": {"report"},
     "matplotlib": {"plot", "report"},
-    "numpy": set(MAY_KNOW) - {"skinbayes", "errors", "phrases", "quantity", "synonyms", "vocabulary", *FILES},
+    "numpy": set(MAY_KNOW)
+    - {"skinbayes", "errors", "phrases", "quantity", "synonyms", "vocabulary", "defaults", *FILES},
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
     "platformdirs": {"emulation"},

@@ -47,6 +47,7 @@ def test_a_parameter_that_is_set_is_not_inferred(
         (["--engine-option", "seed=3"], "expected as --seed"),
         (["--engine", "nested", "--engine-option", "live_points=5"], "live_points: 5 found, a whole number of at least 20"),
         (["--engine", "nested", "--engine-option", "live_point=50"], "expected some of seed, ess, cores, expensive, live_points"),
+        (["--engine", "nested", "--max-steps", "500"], "engine 'nested': no option 'max_steps'; expected some of"),
         (["--set", "typical_friction=0.7"], "Did you mean 'typical_friction_coefficient'"),
         (["--set", "typical_friction_coefficient=1", "--set", "typical_friction_coefficient=2"], "set twice"),
     ],
