@@ -108,7 +108,6 @@ def test_a_version_is_kept_on_disk_and_a_stopped_build_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setenv("SKINBAYES_CACHE", str(tmp_path))
-    monkeypatch.setattr("skinbayes.emulation.tasks._SAVED_EVERY", 0.0)
     whole = prepared().evaluate(inputs_of(5), Tables())
 
     def impatient(inputs, tables):
@@ -117,7 +116,8 @@ def test_a_version_is_kept_on_disk_and_a_stopped_build_goes_on(
         return fading(inputs, tables)
 
     EVALUATED.clear()
-    with pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as often, pytest.raises(KeyboardInterrupt):
+        often.setattr("skinbayes.emulation.tasks._SAVED_EVERY", 0.0)
         prepared(replace(MODEL, evaluate=impatient), version="1")
     EVALUATED.clear()
     prepared()

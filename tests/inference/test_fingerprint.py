@@ -88,7 +88,7 @@ def test_a_changed_parameter_is_evaluated_as_changed():
 
 def test_a_run_of_other_priors_is_not_continued(tmp_path):
     problem = two_parameters(tmp_path)
-    options = {"walkers": 16, "ensembles": 2, "max_steps": 200, "ess": 1e6}
+    options = {"walkers": 16, "ensembles": 2, "max_steps": 100, "ess": 1e6, "importance": False}
     sample(problem, directory=tmp_path / "run", **options)
     with pytest.raises(FingerprintMismatch, match="another model, data, prior"):
         sample(other_prior(problem), directory=tmp_path / "run", resume=True, **options)
