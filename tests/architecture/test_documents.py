@@ -37,7 +37,7 @@ def test_two_commands_of_one_line_each() -> None:
     name, *arguments = words[1:]
     assert cli.commands[name].make_context(name, arguments).params["model"] in shipped_names("models")
     assert "'.[test]'" in second
-    assert second.endswith("-m pytest")
+    assert second.endswith("-m pytest -n 2")
 
 
 def test_ci_takes_its_commands_from_the_readme() -> None:
