@@ -9,14 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import observables, observed_values
 from skinbayes.forward import Profile
-from skinbayes.plot.predictive import (
-    LEVELS,
-    observables,
-    observed_values,
-    plot_predictive,
-    predictive_quantiles,
-)
+from skinbayes.plot.predictive import LEVELS, plot_predictive, predictive_quantiles
 from skinbayes.plot.profile_bands import MOST_CURVES, Band, profile_bands
 from skinbayes.plot.rows import varying
 from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import observables
 from skinbayes.plot.effects import ratio_axis
-from skinbayes.plot.predictive import observables
 from skinbayes.plot.scales import scale_for, ticks
 from skinbayes.plot.style import (
     OBSERVED,

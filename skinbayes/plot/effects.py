@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.plot.predictive import observables, observed_values
+from skinbayes.fit.predicted import observables, observed_values
 from skinbayes.plot.rows import (
     RowPredictions,
     effect_draws,

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.plot.predictive import LEVELS, observables, observed_values
+from skinbayes.fit.predicted import observables, observed_values
+from skinbayes.plot.predictive import LEVELS
 from skinbayes.plot.profile_bands import curve_at_row
 from skinbayes.plot.rows import (
     RowPredictions,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import observables, observed_values, predictive_draws, row_names
 from skinbayes.plot.scales import scale_for, ticks
 from skinbayes.plot.style import (
     OBSERVED,
@@ -84,30 +85,6 @@ def predictive_quantiles(fit: FitResult, group: str = "posterior_predictive") ->
         ],
         axis=1,
     )
-
-
-def predictive_draws(fit: FitResult, group: str = "posterior_predictive") -> FloatArray:
-    """All predictive draws, one observable after the other, shape ``(draws, M)``, SI."""
-    parts = [fit.groups[group][name].values for name in observables(fit)]
-    return np.concatenate(
-        [np.asarray(values, dtype=float).reshape(-1, values.shape[-1]) for values in parts], axis=-1
-    )
-
-
-def observables(fit: FitResult) -> tuple[str, ...]:
-    """Names of what was observed."""
-    return tuple(fit.provenance["observables"])
-
-
-def observed_values(fit: FitResult) -> FloatArray:
-    """The data, one observable after the other, shape ``(M,)``, SI."""
-    observed = fit.groups["observed_data"]
-    return np.concatenate([np.asarray(observed[name].values, dtype=float) for name in observables(fit)])
-
-
-def row_names(fit: FitResult) -> list[str]:
-    """Names of the rows of data."""
-    return [str(row) for row in fit.groups["observed_data"]["row"].values]
 
 
 def datum_names(fit: FitResult) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.plot.predictive import observables, observed_values
+from skinbayes.fit.predicted import observables, observed_values
 from skinbayes.plot.profile_bands import Band, profile_bands
 from skinbayes.plot.rows import abscissa_of_rows
 from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks

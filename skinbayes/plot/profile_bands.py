@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import row_names
 from skinbayes.plot.numbers import quantity
-from skinbayes.plot.predictive import LEVELS, row_names
+from skinbayes.plot.predictive import LEVELS
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
-from skinbayes.plot.predictive import row_names
+from skinbayes.fit.predicted import row_names
 
 if TYPE_CHECKING:
     from skinbayes.fit.result import FitResult

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from skinbayes.plot.predictive import row_names
+from skinbayes.fit.predicted import row_names
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report.discrepancy import discrepancy_findings
 from skinbayes.report.groups import group_findings
-from skinbayes.report.repeats import repeats
 from skinbayes.report.ridges import posterior_ridges
 from skinbayes.report.sensitivity import brief_sensitivity
-from skinbayes.report.trends import residual_trends
 from skinbayes.report.validity import flags
 
 if TYPE_CHECKING:
@@ -55,7 +53,7 @@ def digest(fit: Fit) -> dict[str, Any]:
         },
         "trends": {
             name: [asdict(check) for check in checks if check.found]
-            for name, checks in residual_trends(fit).items()
+            for name, checks in fit.residual_trends.items()
         },
-        "repeats": {name: asdict(one) | {"found": one.found} for name, one in repeats(fit).items()},
+        "repeats": {name: asdict(one) | {"found": one.found} for name, one in fit.repeats.items()},
     }

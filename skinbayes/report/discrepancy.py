@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import is_logarithmic, observables
 from skinbayes.phrases import percent
 from skinbayes.plot.discrepancy import Curve, curves_of
 from skinbayes.plot.numbers import interval, quantity, quantity_of
-from skinbayes.plot.predictive import observables
 from skinbayes.plot.symbols import spoken_name
-from skinbayes.report.trends import is_logarithmic
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit

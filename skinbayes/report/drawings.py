@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from skinbayes.fit.predicted import observables
 from skinbayes.phrases import plural
 from skinbayes.plot import (
     plot_corner,
@@ -21,7 +22,6 @@ from skinbayes.plot import (
     plot_trace,
 )
 from skinbayes.plot.discrepancy import curves_of
-from skinbayes.plot.predictive import observables
 from skinbayes.plot.profile import profile_abscissas
 from skinbayes.plot.rows import group_columns, row_predictions, telling_columns, varying
 from skinbayes.plot.symbols import spoken_name

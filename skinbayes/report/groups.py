@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import is_logarithmic, observables
 from skinbayes.phrases import and_list, number, percent, plural
 from skinbayes.plot.numbers import interval, quantity
-from skinbayes.plot.predictive import observables
 from skinbayes.plot.rows import effect_draws, group_columns
-from skinbayes.report.trends import is_logarithmic
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:

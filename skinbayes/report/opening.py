@@ -8,9 +8,9 @@ import numpy as np
 
 from skinbayes.files.noise_block import NOISE_PARAMETERS
 from skinbayes.files.scatter_block import SCATTER_PARAMETERS
+from skinbayes.fit.predicted import observables, observed_values
 from skinbayes.phrases import and_list
 from skinbayes.plot.numbers import interval, quantity
-from skinbayes.plot.predictive import observables, observed_values
 from skinbayes.plot.rows import varying
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates

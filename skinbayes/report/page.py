@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import cannot_write
-from skinbayes.plot.predictive import observed_values
+from skinbayes.fit.predicted import observed_values
 from skinbayes.report import opening, quality, sentences, tables
 from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.figures import pictures

@@ -7,46 +7,32 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skinbayes.fit.misfit import FEW
+from skinbayes.fit.predicted import is_logarithmic, observables
 from skinbayes.phrases import and_list, number, percent, plural, sample_size
 from skinbayes.plot.numbers import fraction, quantity_of
-from skinbayes.plot.predictive import (
-    datum_names,
-    observables,
-    observed_values,
-    predictive_draws,
-)
+from skinbayes.plot.predictive import datum_names
 from skinbayes.plot.rows import group_columns
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.report.repeats import repeat_sentences
-from skinbayes.report.trends import is_logarithmic, trend_sentences
-from skinbayes.statistics.agreement import Agreement
-from skinbayes.statistics.agreement import examine as agreement_of
+from skinbayes.report.trends import trend_sentences
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
-
-FEW = 5
-"""With fewer data than this their agreement says little."""
+    from skinbayes.statistics.agreement import Agreement
 
 MOST_NAMED = 6
 
 
-def examine(fit: Fit) -> Agreement:
-    """Hold the data of a fit against its posterior predictive draws."""
-    observed = observed_values(fit)
-    of_one_kind = len(observed) >= FEW and len(observables(fit)) == 1
-    return agreement_of(observed, predictive_draws(fit), of_one_kind)
-
-
 def misfit(fit: Fit) -> bool:
     """Whether single values, mean, scatter, a trend of the residuals or repeats speak against the model."""
-    return examine(fit).misfit or bool(trend_sentences(fit)) or bool(repeat_sentences(fit)[0])
+    return fit.agreement.misfit or bool(trend_sentences(fit)) or bool(repeat_sentences(fit)[0])
 
 
 def verdict(fit: Fit) -> list[str]:
     """Whether the model fits, in a few sentences; what only looks like a good fit is not praised."""
-    found, trends, (beyond, allowed) = examine(fit), trend_sentences(fit), repeat_sentences(fit)
+    found, trends, (beyond, allowed) = fit.agreement, trend_sentences(fit), repeat_sentences(fit)
     follows = trends + beyond
     inside = (
         f"{found.wide} of {found.count} values lie in their 90 % ranges "
@@ -97,7 +83,7 @@ def free_scatter(fit: Fit) -> str:
 
 def agreement(fit: Fit) -> list[str]:
     """Whether the fitted model reproduces the data it was fitted to, check by check."""
-    found = examine(fit)
+    found = fit.agreement
     said = [
         f"{_of(found.wide, found.count)} in the 5–95 % range of what the fitted model predicts, {found.narrow} in the 25–75 % "
         f"range; about {number(0.9 * found.count, 2)} and {number(0.5 * found.count, 2)} would be expected of a model that "

@@ -6,74 +6,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.fit.misfit import ORDER
+from skinbayes.fit.predicted import is_logarithmic, observables
 from skinbayes.phrases import percent
 from skinbayes.plot.numbers import quantity_of
-from skinbayes.plot.predictive import observables, observed_values, predictive_draws
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.statistics.noise_families import noise_family
-from skinbayes.statistics.trends import Trend, trends
-from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX, lookup
+from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
-
-MOST_DRAWS = 1000
-"""Simulated data sets that the data are held against."""
-
-FEWEST_DRAWS, MOST_NUMBERS = 200, 2_000_000
-"""With many rows fewer, so that they hold at most so many numbers."""
-
-ORDER = "order"
-"""Name of the order of the rows among the columns."""
-
-
-def residual_trends(fit: Fit) -> dict[str, tuple[Trend, ...]]:
-    """Checks of the residuals along every column that varies and in the order of the rows, by observable."""
-    columns = columns_of_rows(fit)
-    return {name: trends(data, simulated, columns) for name, (data, simulated) in residuals_of(fit).items()}
-
-
-def residuals_of(fit: Fit) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Residuals of the data ``(N,)`` and of simulated data ``(S, N)`` from typical predictions, by observable."""
-    names = observables(fit)
-    observed = observed_values(fit).reshape(len(names), -1)
-    draws = predictive_draws(fit)
-    most = max(FEWEST_DRAWS, min(MOST_DRAWS, MOST_NUMBERS // observed.size))
-    draws = draws[:: max(1, len(draws) // most)].reshape(-1, len(names), observed.shape[1])
-    found = {}
-    for place, name in enumerate(names):
-        logarithmic = is_logarithmic(fit, name)
-        with np.errstate(all="ignore"):
-            data, simulated = (np.log(x) if logarithmic else x for x in (observed[place], draws[:, place]))
-            usable = simulated[np.isfinite(simulated).all(axis=1)]
-            if len(usable):
-                middle = np.median(usable, axis=0)
-                found[name] = (data - middle, usable - middle)
-    return found
-
-
-def is_logarithmic(fit: Fit, observable: str) -> bool:
-    """Whether residuals of an observable are those of its logarithm."""
-    noise = fit.provenance.get("noise", {}).get(observable)
-    return noise is not None and bool(noise_family(str(noise)).logarithmic)
-
-
-def columns_of_rows(fit: Fit) -> dict[str, FloatArray]:
-    """Numbers that differ from row to row, and the order of the rows, each ``(N,)``."""
-    count = fit.groups["observed_data"].sizes["row"]
-    found: dict[str, FloatArray] = {}
-    if "constant_data" in fit.groups:
-        for name, values in fit.groups["constant_data"].data_vars.items():
-            spread = str(name).endswith(STANDARD_DEVIATION_SUFFIX)
-            if values.dtype.kind in "fiu" and values.shape == (count,) and not spread:
-                found[str(name)] = np.asarray(values.values, dtype=float)
-    return found | {ORDER: np.arange(count, dtype=float)}
+    from skinbayes.statistics.trends import Trend
 
 
 def worst(fit: Fit) -> dict[str, Trend]:
     """The most surprising trend of each observable that has one; along a column rather than in the order of the rows."""
-    found = {name: [c for c in checks if c.found] for name, checks in residual_trends(fit).items()}
+    found = {name: [c for c in checks if c.found] for name, checks in fit.residual_trends.items()}
     # rows often stand in the order of a column
     return {name: min(checks, key=lambda c: c.column == ORDER) for name, checks in found.items() if checks}
 

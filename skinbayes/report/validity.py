@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.predicted import row_names
 from skinbayes.phrases import and_list, percent, plural
-from skinbayes.plot.predictive import row_names
 from skinbayes.plot.rows import label_columns, levels_of_rows
 
 if TYPE_CHECKING:

@@ -109,6 +109,7 @@ def _squares(
     data: FloatArray, condition: NDArray[np.intp], count: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Sums of squares of the means of conditions and about them, each ``(S,)``."""
-    belongs = np.eye(len(count))[condition]
-    means = data @ belongs / count
+    rows = np.argsort(condition, kind="stable")
+    first = np.concatenate([[0], np.cumsum(count[:-1])]).astype(np.intp)
+    means = np.add.reduceat(data[:, rows], first, axis=1) / count
     return np.square(means) @ count, np.square(data - means[:, condition]).sum(axis=1)

@@ -84,10 +84,10 @@ HOMES: dict[str, set[str]] = {
 
 def reaches_up_lazily(found: Import) -> bool:
     return (
-        found.module == "skinbayes.fit.fit"
+        found.module == "skinbayes.fit.drawn_fit"
         and floor_of(found.target) == FIT_METHODS_MAY_DRAW
         and len(found.inside) == 2
-        and found.inside[0] == "Fit"
+        and found.inside[0] == "DrawnFit"
         and found.inside[1].startswith("plot_")
     )
 

@@ -12,6 +12,7 @@ from test_discrepancy_models import problem
 @pytest.mark.slow
 def test_a_discrepancy_keeps_the_shear_stress_covered() -> None:
     found = sweep_levels(SIMULATIONS, 5)
+    print({name: inside(levels, 0.9) for name, levels in found.items()})
     # 100 of 100, as a height of the whole curve stays possible; 45 with independent noise
     assert inside(found["discrepancy"], 0.9) >= 85
     assert inside(found["independent"], 0.9) < 60
@@ -20,6 +21,7 @@ def test_a_discrepancy_keeps_the_shear_stress_covered() -> None:
 @pytest.mark.slow
 def test_correlated_noise_and_drift_keep_the_shear_stress_covered() -> None:
     found = series_levels(SIMULATIONS, 5)
+    print({name: inside(levels, 0.9) for name, levels in found.items()})
     # 94 of 100; 12 with independent noise
     assert inside(found["correlated"], 0.9) >= 85
     assert inside(found["independent"], 0.9) < 30

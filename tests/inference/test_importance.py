@@ -269,6 +269,7 @@ def test_evidence_of_normal_distributions_in_up_to_twenty_dimensions():
         value, error = run(Known(normal, dimension), seed=seed, ess=2000).log_evidence
         near.append(abs(value - 2.0) < 0.02)
         within.append(abs(value - 2.0) < 3 * error)
+    print(f"ln Z of 100 densities: {sum(near)} within 0.02, {sum(within)} within three standard errors")
     assert sum(near) >= 95 and sum(within) >= 95
 
 

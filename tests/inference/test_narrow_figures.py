@@ -15,8 +15,8 @@ from matplotlib.text import Text
 import skinbayes.plot
 from skinbayes.errors import InputError
 from skinbayes.fit import Fit, sample
+from skinbayes.fit.predicted import observed_values
 from skinbayes.plot import plot_corner, plot_data, plot_levels, plot_profile
-from skinbayes.plot.predictive import observed_values
 from skinbayes.problem import load_problem
 
 PLOTS = [getattr(skinbayes.plot, name) for name in skinbayes.plot.__all__]

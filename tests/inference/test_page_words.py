@@ -51,11 +51,11 @@ def by_row(name: str, draws: np.ndarray, **attributes: str) -> xarray.DataArray:
 
 def test_misfit_is_said_at_the_top_and_in_the_terminal() -> None:
     fit = fit_of()
-    assert not quality.examine(fit).misfit
+    assert not fit.agreement.misfit
     observed = fit.groups["observed_data"].copy()
     observed["friction_coefficient"] = observed["friction_coefficient"] * np.r_[np.ones(11), 10.0]
     bad = replace(fit, groups={**fit.groups, "observed_data": observed})
-    assert quality.examine(bad).misfit
+    assert bad.agreement.misfit
     said = " ".join(quality.verdict(bad))
     assert said.startswith("The model misses something:") and "row 12 is far out" in said
     assert said in remarks(bad)
@@ -70,7 +70,7 @@ def test_many_rows_are_not_far_out_by_chance() -> None:
     for _ in range(40):
         observed = fit.groups["observed_data"].copy()
         observed["friction_coefficient"] = ("row", rng.permuted(draws, axis=0)[0])
-        found += bool(quality.examine(replace(fit, groups={**fit.groups, "observed_data": observed})).far)
+        found += bool(replace(fit, groups={**fit.groups, "observed_data": observed}).agreement.far)
     assert found <= 8  # 5 % each: 2 expected, more than 8 once in 100,000
 
 

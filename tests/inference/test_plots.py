@@ -14,6 +14,7 @@ from scipy import stats
 
 import skinbayes.plot
 from skinbayes.fit import Fit, sample
+from skinbayes.fit.predicted import observed_values
 from skinbayes.phrases import number
 from skinbayes.plot import (
     plot_corner,
@@ -24,7 +25,6 @@ from skinbayes.plot import (
     plot_trace,
 )
 from skinbayes.plot.numbers import quantity
-from skinbayes.plot.predictive import observed_values
 from skinbayes.plot.prior_posterior import smooth_density
 from skinbayes.plot.scales import round_values
 from skinbayes.plot.symbols import figure_text

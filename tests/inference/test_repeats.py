@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from skinbayes.fit import Fit, sample
+from skinbayes.fit.misfit import conditions
 from skinbayes.problem import load_problem
 from skinbayes.report import digest, quality
-from skinbayes.report.repeats import conditions, repeats
 from skinbayes.statistics.repeats import lack_of_fit
 
 CONDITION = np.repeat(np.arange(8), 3)
@@ -104,7 +104,7 @@ def pairs(folder: Path, exponent: float) -> Fit:
 def test_terminal_page_and_json_say_it(exponent: float, misfit: bool, tmp_path: Path) -> None:
     fit = pairs(tmp_path, exponent)
     assert conditions(fit.problem).tolist() == np.repeat(np.arange(8), 2).tolist()
-    one = repeats(fit)["friction_coefficient"]
+    one = fit.repeats["friction_coefficient"]
     assert one.found == misfit == quality.misfit(fit)
     assert one.scatter == pytest.approx(0.05, rel=0.6) and one.degrees_of_freedom == 8
     said = " ".join(quality.verdict(fit))

@@ -7,7 +7,7 @@ import pytest
 
 import skinbayes as sb
 from skinbayes.report import digest, quality
-from skinbayes.report.trends import residual_trends, trend_sentences
+from skinbayes.report.trends import trend_sentences
 from skinbayes.statistics.trends import KINDS, trends
 
 ROWS = 24
@@ -112,6 +112,6 @@ def test_a_load_series_that_it_does_follow_is_not_suspected():
     fit = load_series(0.0)
     assert trend_sentences(fit) == [] and not quality.misfit(fit)
     assert digest(fit)["trends"] == {"friction_coefficient": []}
-    (checks,) = residual_trends(fit).values()
+    (checks,) = fit.residual_trends.values()
     assert {check.column for check in checks} == {"normal_force", "order"}
     assert "trends do not speak against it" in quality.verdict(fit)[0]
