@@ -11,6 +11,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.sampling.convergence import rank_r_hat
 from skinbayes.sampling.importance import ImportanceDraws, importance_draws
 from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.search import Search
 from skinbayes.sampling.stopping import is_check
 from skinbayes.sampling.target import Target
 
@@ -31,9 +32,6 @@ a little more than they will, weighted draws tell who is right."""
 DRAWS_FOR_EXPLORED, DRAWS_FOR_ESS = 1.5, 8.0
 """Draws that are made at least for each position that was explored: they cost little more, and are worth far more. But no more
 than so many for each effective draw that was asked for."""
-
-AT_A_TIME = 256
-"""Positions that a worker evaluates at a time; a fixed number, so that one seed gives the same with any number of workers."""
 
 
 class Finish:
@@ -81,22 +79,21 @@ class Finish:
             return None
         explored = ensembles * steps * walkers
 
-        def evaluate(new: FloatArray) -> FloatArray:
-            pieces = [new[first : first + AT_A_TIME] for first in range(0, len(new), AT_A_TIME)]
-            return np.concatenate(crew(pieces))
-
+        search = Search(self._target, crew, walkers, options.search)
         found = importance_draws(
             chains,
             log_density.reshape(ensembles, -1),
-            evaluate,
+            search.evaluate,
             options.ess,
             np.random.default_rng([options.seed, 8, steps]),
             int(min(DRAWS_FOR_EXPLORED * explored, DRAWS_FOR_ESS * options.ess)),
             agree,
+            search if options.search else None,
         )
         if isinstance(found, ImportanceDraws):
             return found
         self.refused, tried = found
+        tried += search.evaluations
         self.evaluations += tried
         self._not_before = AFTER_REFUSAL * steps if tried > explored / 4 else 0
         return None

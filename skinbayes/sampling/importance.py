@@ -12,13 +12,14 @@ speaks against them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import logsumexp, stdtrit
+from scipy.special import expit, logsumexp, stdtrit
 
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.draws import weighted_quantiles
+from skinbayes.sampling.search import EXPLORATIONS, FOUND_WITH, MISSED, Search
 from skinbayes.sampling.stopping import TAIL_FRACTION
 from skinbayes.sampling.stuck_walkers import left_behind
 from skinbayes.statistics.pareto import pareto_shape, smoothed
@@ -37,11 +38,17 @@ much more volume it would have hardly any draws where the weights become large."
 ROUNDS = 12
 """Rounds of draws at most."""
 
+REFUSALS = 3
+"""Times that enough draws are refused before they are given up: what still speaks against them more draws do not cure."""
+
 GROWTH = 1.5
 """A round has so many times as many draws as the one before, or fewer if that is enough."""
 
 WORTHWHILE = 0.03
 """Effective draws for each evaluation that are worth to begin with; walkers give as many."""
+
+EXPLORED_WEIGHT = 0.2
+"""Part of the next draws that a place gets that was missed and then explored."""
 
 LARGEST_SHAPE = 0.5
 """Largest k̂ of the weights, and of those below and above the median of each coordinate, at which draws are accepted."""
@@ -63,6 +70,7 @@ class ImportanceDraws:
     proposals : what either half of them, every second one, was drawn from
     shape : k̂ of the weights
     ess, tail_ess : effective sample sizes of the mean, and the smaller of the 5 % and 95 % quantiles, of each coordinate
+    search : what was looked for beside the draws; None if nothing was
     """
 
     positions: FloatArray
@@ -73,6 +81,7 @@ class ImportanceDraws:
     shape: float
     ess: FloatArray
     tail_ess: FloatArray
+    search: Search | None = None
 
     def lacking(self, ess: float) -> float:
         """How many times as many draws it takes for an effective sample size; at most 1 if these do."""
@@ -87,6 +96,7 @@ def importance_draws(
     rng: np.random.Generator,
     least: int = 0,
     agree: bool = True,
+    search: Search | None = None,
 ) -> ImportanceDraws | tuple[str, int]:
     """Draw from a target that ensembles have explored.
 
@@ -99,6 +109,7 @@ def importance_draws(
     rng : source of all randomness
     least : number of draws that are made at least
     agree : whether the ensembles agree; if not, the mixture is fitted to and examined with every second position of each
+    search : looks for what ensembles and proposals have missed; None does not look
 
     Returns
     -------
@@ -125,14 +136,34 @@ def importance_draws(
     mixture = mixture.refitted(everything, np.ones(len(everything)))
     sides = (_Rounds(mixture), _Rounds(mixture))
     size, against = max(200, 30 * explored.shape[-1]), None
+    beside, begun, parts = visited, mixture, None
+    looked, refusals = False, 0
     for number in range(ROUNDS):
         for side in sides:
             side.draw(size, evaluate, rng)
-        found = _weighed(sides)
+        found = replace(_weighed(sides), search=search)
         count = len(found.positions)
         lacking = max(found.lacking(ess), least / count)
-        if lacking <= 1.0 and (against := next(_against(found, explored, explored_density), None)) is None:
-            return found
+        if search is not None:
+            if lacking <= 1.0 and not looked:
+                beside.append(search.look(mixture.as_one(), explored_density.size + count, rng))
+                looked = True
+            if search.explorations < EXPLORATIONS and (place := _missed(found, beside)) is not None:
+                beside.append(search.explore(place, mixture.as_one().factors[0], rng))
+                part = fit_mixture(beside[-1][0][::2], beside[-1][0][1::2], rng)
+                parts = part if parts is None else parts.with_part(part, 0.5)
+                for side in sides:
+                    side.mixture = side.mixture.with_part(part, EXPLORED_WEIGHT)
+                size = max(size, count // 4)
+                continue
+        if lacking <= 1.0:
+            known = 1.0 if parts is None else expit(_log_ratio(begun, parts, found.positions))
+            against = next(_against(found, explored, explored_density, known), None)
+            if against is None:
+                return found
+            refusals += 1
+            if refusals == REFUSALS:
+                break
         if number > 4 and count > (2.0 / WORTHWHILE) * found.ess.min():
             break
         fitted = [side.refitted(rng) for side in sides]
@@ -140,6 +171,25 @@ def importance_draws(
             side.mixture = mixture
         size = int(np.ceil(min(GROWTH * size, max(1.1 * lacking - 1.0, 0.2) * count / 2)))
     return against or f"the effective sample size of {count} draws is {found.ess.min():.0f}", count
+
+
+def _log_ratio(one: StudentMixture, other: StudentMixture, positions: FloatArray) -> FloatArray:
+    return one.log_density(positions) - other.log_density(positions)
+
+
+def _missed(found: ImportanceDraws, beside: list[tuple[FloatArray, FloatArray]]) -> FloatArray | None:
+    """The place at which the target most exceeds what the draws lead to expect, if a part of it can have been missed there."""
+    positions, heights = (np.concatenate(arrays) for arrays in zip(*beside, strict=True))
+    count = len(found.positions)
+    ratios = found.log_density - found.log_proposal
+    expected = logsumexp(ratios) - np.log(count)
+    there = heights - StudentMixture.of(found.proposals, [1, 1]).log_density(positions)
+    # a single draw with a tenth of all weight has fallen into something, too
+    if count >= 1000 and ratios.max() - expected > np.log(0.1 * count):
+        return np.asarray(found.positions[np.argmax(ratios)])
+    if there.max() > max(ratios.max(), expected + np.log(max(MISSED * count / FOUND_WITH, 10.0))):
+        return np.asarray(positions[np.argmax(there)])
+    return None
 
 
 class _Rounds:
@@ -234,8 +284,13 @@ def _visited(chain: FloatArray, log_density: FloatArray) -> tuple[FloatArray, Fl
     return chain[places], log_density[places]
 
 
-def _against(found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray) -> Iterator[str]:
-    """What speaks against accepting draws, one sentence each."""
+def _against(
+    found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray, known: FloatArray | float
+) -> Iterator[str]:
+    """What speaks against accepting draws, one sentence each.
+
+    ``known`` is how much of each draw, between 0 and 1, is of the parts that the ensembles have found.
+    """
     if not found.shape <= LARGEST_SHAPE:
         yield f"the weights are too uneven (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted)"
     weights = np.exp(found.log_weights - found.log_weights.max())
@@ -244,6 +299,7 @@ def _against(found: ImportanceDraws, explored: FloatArray, explored_density: Flo
         for tail in (x <= ends[1], x >= ends[1]):
             if not (shape := pareto_shape(weights[tail])) <= LARGEST_SHAPE:
                 yield f"the weights are too uneven in a tail of coordinate {column + 1} (Pareto k {shape:.2f})"
+    quantiles = np.array([weighted_quantiles(x, weights * known, TAILS) for x in found.positions.T])
     # where the proposal is missing something that ensembles have found, their ratios exceed all those of the draws
     highest = (found.log_density - found.log_proposal).max()
     below = []

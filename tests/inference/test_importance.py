@@ -43,6 +43,9 @@ class Known:
     def starts(self, rng, count):
         return self.spread * rng.normal(size=(count, self.dimension))
 
+    def prior_transform(self, unit):
+        return self.spread * norm.ppf(unit)
+
     def integrated_out(self, position, rng):
         return {}
 
