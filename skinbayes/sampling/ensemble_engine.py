@@ -12,13 +12,14 @@ from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.evidence import bridge, combined
-from skinbayes.sampling.importance import LARGEST_SHAPE, ImportanceDraws, importance_draws
+from skinbayes.sampling.importance import LARGEST_SHAPE, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import RunProgress
 from skinbayes.sampling.search import FOUND_WITH
 from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.verdict import verdict
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 
 EVIDENCE_DRAWS = 2000
 """Draws of a proposal for ln Z, where walkers gave those of the posterior: its error is then about 0.02."""
@@ -104,7 +105,7 @@ def _evidence(
     )
     if isinstance(found, ImportanceDraws):
         return _bridged(chains, found), len(found.positions)
-    return None, found[1]
+    return None, found.tried
 
 
 def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:

@@ -18,7 +18,8 @@ from skinbayes.sampling.target import Target
 from skinbayes.statistics.student_mixture import StudentMixture
 
 MISSED = 0.01
-"""Part of the posterior that must not be missed: without one of n draws it has over MISSED n/FOUND_WITH times what is expected."""
+"""Part of the posterior that must not be missed. Without a single one of n draws it has at least MISSED n/FOUND_WITH times the
+density that they lead to expect."""
 
 FOUND_WITH = 3
 """Draws that are expected where at least one falls in 95 of 100 cases: ln 20."""
@@ -90,7 +91,11 @@ class Search:
         return positions, self.evaluate(positions) if len(positions) else np.empty(0)
 
     def explore(
-        self, place: FloatArray, factor: FloatArray, rng: np.random.Generator
+        self,
+        place: FloatArray,
+        factor: FloatArray,
+        surprise: Callable[[FloatArray, FloatArray], FloatArray],
+        rng: np.random.Generator,
     ) -> tuple[FloatArray, FloatArray]:
         """Positions of an ensemble that began at a place, and their log-density.
 
@@ -98,6 +103,7 @@ class Search:
         ----------
         place : where, shape ``(D,)``
         factor : lower Cholesky factor of the covariance of what is known, shape ``(D, D)``
+        surprise : of positions and their log-density, positive where more is to be found than is known
         rng : source of all randomness
         """
         self.explorations += 1
@@ -116,6 +122,9 @@ class Search:
             state = steps.end
             self.evaluations += steps.evaluations
             before, spread = spread, steps.positions.std(axis=(0, 1))
-            if (spread < GROWN * before).all():
+            # walkers that have come to where everything is known have nothing to find
+            if (spread < GROWN * before).all() or np.median(
+                surprise(state.positions, state.log_density)
+            ) < 0.0:
                 break
         return steps.positions.reshape(-1, place.size), steps.log_density.ravel()

@@ -15,9 +15,10 @@ from scipy.stats import t as student
 from skinbayes.sampling.draws import Draws, weighted_quantiles
 from skinbayes.sampling.ensemble_engine import EnsembleEngine
 from skinbayes.sampling.evidence import bridge
-from skinbayes.sampling.importance import ImportanceDraws, importance_draws
+from skinbayes.sampling.importance import Refusal, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.store import SampleStore
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 from skinbayes.statistics.pareto import smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
 
@@ -172,7 +173,7 @@ def test_a_run_resumed_after_refused_draws_tries_when_it_would_have(tmp_path: Pa
 
     def at_first_refused(chains, *arguments):
         fresh = chains.shape[1] < 16 * 25  # the later half of the first 25 steps
-        return ("too uneven", 10_000) if fresh else importance_draws(chains, *arguments)
+        return Refusal("too uneven", 10_000) if fresh else importance_draws(chains, *arguments)
 
     monkeypatch.setattr(finish, "importance_draws", at_first_refused)
     target = Known(normal, 4)
