@@ -89,7 +89,7 @@ class SamplerOptions(EngineOptions):
     max_steps: int = 10_000
     block_steps: int = None  # type: ignore[assignment]  # filled in below
     importance: bool = True
-    search: float = 0.2
+    search: float = 0.1
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -193,6 +193,29 @@ def test_a_run_resumed_after_refused_draws_tries_when_it_would_have(tmp_path: Pa
     assert whole.diagnostics["evaluations"] == resumed.diagnostics["evaluations"]
 
 
+def test_draws_that_wait_for_ensembles_are_the_same_when_resumed(tmp_path: Path, monkeypatch):
+    from skinbayes.sampling import importance
+
+    def lagging(found, explored, *others):
+        return "they lag behind" if explored.shape[1] < 16 * 25 else behind(found, explored, *others)
+
+    behind = importance._behind
+    monkeypatch.setattr(importance, "_behind", lagging)
+    target, options = Known(normal, 4), SamplerOptions(seed=5, ess=1000, walkers=16)
+    whole = EnsembleEngine().run(target, options)
+    assert whole.diagnostics["steps"] == 50
+
+    def stop(progress):
+        if progress.steps >= 25:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        EnsembleEngine().run(target, options, SampleStore(tmp_path / "steps"), stop)
+    resumed = EnsembleEngine().run(target, options, SampleStore(tmp_path / "steps", resume=True))
+    np.testing.assert_array_equal(whole.samples, resumed.samples)
+    assert whole.diagnostics["evaluations"] == resumed.diagnostics["evaluations"]
+
+
 def explored(rng, places, count=1500):
     """Independent draws of normal distributions about places, one ensemble each."""
     return np.array([place + rng.normal(size=(count, 2)) for place in places])
