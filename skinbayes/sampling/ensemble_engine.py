@@ -76,16 +76,15 @@ def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
 
 
 def _looked(found: ImportanceDraws) -> str:
+    """What was searched beside the draws, as the end of a sentence."""
     search = found.search
     if search is None or search.from_prior < FOUND_WITH:
         return ""
-    places = {0: "nothing", 1: "a place that was"}.get(
-        search.explorations, f"{search.explorations} places that were"
-    )
-    else_found = "nothing else" if not search.explorations else f"{places} then explored"
+    places = "a place that was" if search.explorations == 1 else f"{search.explorations} places that were"
+    more = f"{places} then explored" if search.explorations else "nothing else"
     return (
         f", outside it one in less than 1/{search.from_prior // FOUND_WITH} of the prior: {search.from_prior} draws of the prior "
-        f"and {search.from_about} all about the posterior found {else_found}"
+        f"and {search.from_about} of a Cauchy distribution about the posterior found {more}"
     )
 
 

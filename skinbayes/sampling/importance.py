@@ -120,11 +120,12 @@ class Attempt:
         self, mixture: StudentMixture, evaluate: Evaluate, search: Search | None, rng: np.random.Generator
     ) -> None:
         self._begun, self._evaluate, self._search, self._rng = mixture, evaluate, search, rng
+        (self._searching,) = rng.spawn(1)  # draws are the same whatever was searched
         self._sides = (Rounds(mixture), Rounds(mixture))
         self._size = max(200, 30 * mixture.dimension)
         self._parts: StudentMixture | None = None
         self._beside: list[tuple[FloatArray, FloatArray]] = []
-        self._looked = False
+        self._looked = self._false_alarm = False
 
     def go_on(
         self, explored: FloatArray, explored_density: FloatArray, ess: float, least: int = 0
@@ -169,15 +170,20 @@ class Attempt:
             return False
         whole = self._sides[0].mixture.as_one()
         if enough and not self._looked:
-            self._beside.append(search.look(whole, steps + len(found.positions), self._rng))
+            self._beside.append(search.look(whole, steps + len(found.positions), self._searching))
             self._looked = True
         # in its first rounds a proposal misses much that it will find
         place = _missed(found, self._beside) if enough else _fallen_into(found) if number > 1 else None
-        if place is None or search.explorations >= EXPLORATIONS:
+        if place is None or self._false_alarm or search.explorations >= EXPLORATIONS:
             return False
-        there = search.explore(place, whole.factors[0], found.surprise, self._rng)
+        there = search.explore(place, whole.factors[0], found.surprise, self._searching)
+        # walkers that came to where everything is known have found a tail of it, no part of its own
+        self._false_alarm = enough and bool(np.median(found.surprise(*there)) < 0.0)
+        if self._false_alarm:
+            return False
+        search.explorations += 1
         self._beside.append(there)
-        part = fit_mixture(there[0][::2], there[0][1::2], self._rng)
+        part = fit_mixture(there[0][::2], there[0][1::2], self._searching)
         self._parts = part if self._parts is None else self._parts.with_part(part, 0.5)
         for side in self._sides:
             side.mixture = side.mixture.with_part(part, EXPLORED_WEIGHT)

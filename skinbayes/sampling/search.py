@@ -49,7 +49,7 @@ class Search:
     ----------
     evaluations : made by search and exploration
     from_prior, from_about : draws of the prior, and of the Cauchy distribution, that were looked at
-    explorations : places that were explored
+    explorations : places that were explored and are parts of their own
     """
 
     def __init__(
@@ -106,7 +106,6 @@ class Search:
         surprise : of positions and their log-density, positive where more is to be found than is known
         rng : source of all randomness
         """
-        self.explorations += 1
         near = place + BALL * rng.normal(size=(4 * self._walkers, place.size)) @ factor.T
         near[0] = place
         density = self.evaluate(near)
