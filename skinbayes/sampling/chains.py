@@ -8,8 +8,8 @@ from math import ceil
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.sampling.importance import ImportanceDraws
 from skinbayes.sampling.stopping import StoppingReport
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 
 
 @dataclass(frozen=True)

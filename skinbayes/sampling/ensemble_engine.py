@@ -12,18 +12,17 @@ from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.draws import Draws
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.evidence import bridge, combined
-from skinbayes.sampling.importance import LARGEST_SHAPE, ImportanceDraws, importance_draws
+from skinbayes.sampling.importance import LARGEST_SHAPE, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import RunProgress
+from skinbayes.sampling.search import FOUND_WITH
 from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.target import Target
 from skinbayes.sampling.verdict import verdict
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 
 EVIDENCE_DRAWS = 2000
 """Draws of a proposal for ln Z, where walkers gave those of the posterior: its error is then about 0.02."""
-
-FOUND_WITH = 3
-"""Draws that are expected where at least one falls in 95 of 100 cases: ln 20."""
 
 DRAWS_PER_CHAIN = 2500
 """Draws kept of each ensemble; nearly independent, so four ensembles give quantiles to about 0.01 sd."""
@@ -58,21 +57,35 @@ class EnsembleEngine:
 
 def _weighted(chains: Chains, found: ImportanceDraws) -> Draws:
     ensembles, _, walkers, _ = chains.positions.shape
+    search = found.search
     words = (
         f"Converged: {ensembles} ensembles of {walkers} walkers found the posterior in {chains.steps} steps, and "
         f"{len(found.positions)} independent draws by importance sampling have an effective sample size of at least "
         f"{found.ess.min():.0f} (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted). A part of the posterior "
-        f"in less than 1/{len(found.positions) // FOUND_WITH} of the space that they cover can have been missed."
+        f"in less than 1/{len(found.positions) // FOUND_WITH} of the space that they cover can have been missed{_looked(found)}."
     )
     diagnostics = _explored(chains, words) | {
         "missing": [],
         "importance_draws": len(found.positions),
         "pareto_k": found.shape,
-        "evaluations": chains.evaluations + len(found.positions),
+        "evaluations": chains.evaluations + len(found.positions) + (search.evaluations if search else 0),
         "ess_bulk": found.ess,
         "ess_tail": found.tail_ess,
     }
     return Draws(found.positions, found.log_weights, _bridged(chains, found), diagnostics, found.log_density)
+
+
+def _looked(found: ImportanceDraws) -> str:
+    """What was searched beside the draws, as the end of a sentence."""
+    search = found.search
+    if search is None or search.from_prior < FOUND_WITH:
+        return ""
+    places = "a place that was" if search.explorations == 1 else f"{search.explorations} places that were"
+    more = f"{places} then explored" if search.explorations else "nothing else"
+    return (
+        f", outside it one in less than 1/{search.from_prior // FOUND_WITH} of the prior: {search.from_prior} draws of the prior "
+        f"and {search.from_about} of a Cauchy distribution about the posterior found {more}"
+    )
 
 
 def _evidence(
@@ -91,7 +104,7 @@ def _evidence(
     )
     if isinstance(found, ImportanceDraws):
         return _bridged(chains, found), len(found.positions)
-    return None, found[1]
+    return None, found.tried
 
 
 def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:
@@ -106,6 +119,8 @@ def _bridged(chains: Chains, found: ImportanceDraws) -> tuple[float, float]:
         evidences.append(bridge(log_density - at_walkers.reshape(log_density.shape), at_draws, effective))
     bridged = combined([(one.value, one.error) for one in evidences], shared=True)
     plain = combined([(one.plain, one.plain_error) for one in evidences])
+    if found.search is not None and found.search.explorations:
+        return plain  # the ensembles had missed something
     # explored positions that are few and correlated add more error than they take away
     return min(bridged, plain, key=lambda one: one[1])
 

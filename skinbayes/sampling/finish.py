@@ -9,10 +9,12 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.convergence import rank_r_hat
-from skinbayes.sampling.importance import ImportanceDraws, importance_draws
+from skinbayes.sampling.importance import Attempt, importance_draws
 from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.search import Search
 from skinbayes.sampling.stopping import is_check
 from skinbayes.sampling.target import Target
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 
 FIRST_ATTEMPT = 25
 """Steps after which importance sampling is tried for the first time; then each time the run is 30 % longer."""
@@ -32,9 +34,6 @@ DRAWS_FOR_EXPLORED, DRAWS_FOR_ESS = 1.5, 8.0
 """Draws that are made at least for each position that was explored: they cost little more, and are worth far more. But no more
 than so many for each effective draw that was asked for."""
 
-AT_A_TIME = 256
-"""Positions that a worker evaluates at a time; a fixed number, so that one seed gives the same with any number of workers."""
-
 
 class Finish:
     """Tries importance sampling as the run grows.
@@ -46,14 +45,14 @@ class Finish:
     Attributes
     ----------
     refused : why draws were not accepted, the last time they were tried
-    evaluations : of the target for draws that were not accepted
     """
 
     def __init__(self, target: Target, options: SamplerOptions) -> None:
         self._target, self._options = target, options
-        self._not_before = 0
+        self._not_before = self._since = self._made = self._given_up = 0
+        self._pending: Attempt | None = None
+        self._search: Search | None = None
         self.refused = ""
-        self.evaluations = 0
 
     def attempt(
         self, steps: int, joined: Callable[[str], FloatArray], crew: Callable[[Sequence[Any]], list[Any]]
@@ -80,23 +79,37 @@ class Finish:
             self.refused = f"the ensembles do not agree yet about {self._target.names[worst]}"
             return None
         explored = ensembles * steps * walkers
-
-        def evaluate(new: FloatArray) -> FloatArray:
-            pieces = [new[first : first + AT_A_TIME] for first in range(0, len(new), AT_A_TIME)]
-            return np.concatenate(crew(pieces))
-
-        found = importance_draws(
-            chains,
-            log_density.reshape(ensembles, -1),
-            evaluate,
-            options.ess,
-            np.random.default_rng([options.seed, 8, steps]),
-            int(min(DRAWS_FOR_EXPLORED * explored, DRAWS_FOR_ESS * options.ess)),
-            agree,
-        )
+        least = int(min(DRAWS_FOR_EXPLORED * explored, DRAWS_FOR_ESS * options.ess))
+        flat = log_density.reshape(ensembles, -1)
+        if self._pending is not None:
+            found = self._pending.go_on(chains, flat, options.ess, least)
+        else:
+            self._search = Search(self._target, crew, walkers, options.search)
+            found = importance_draws(
+                chains,
+                flat,
+                self._search.evaluate,
+                options.ess,
+                np.random.default_rng([options.seed, 8, steps]),
+                least,
+                agree,
+                self._search if options.search else None,
+            )
+            self._since = steps
         if isinstance(found, ImportanceDraws):
+            self._made = 0
             return found
-        self.refused, tried = found
-        self.evaluations += tried
-        self._not_before = AFTER_REFUSAL * steps if tried > explored / 4 else 0
+        self.refused = found.why
+        self._made = found.tried + (0 if self._search is None else self._search.evaluations)
+        if found.pending is not None and steps < AFTER_REFUSAL * self._since:
+            self._pending = found.pending
+            return None
+        self._not_before = AFTER_REFUSAL * self._since if self._made > explored / 4 else 0
+        self._given_up += self._made
+        self._made, self._pending = 0, None
         return None
+
+    @property
+    def evaluations(self) -> int:
+        """Of the target for draws that were not accepted."""
+        return self._given_up + self._made

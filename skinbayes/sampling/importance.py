@@ -11,31 +11,26 @@ speaks against them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
-from scipy.special import logsumexp, stdtrit
+from scipy.special import log_expit, logsumexp, stdtrit
 
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.draws import weighted_quantiles
-from skinbayes.sampling.stopping import TAIL_FRACTION
+from skinbayes.sampling.search import EXPLORATIONS, Search
 from skinbayes.sampling.stuck_walkers import left_behind
-from skinbayes.statistics.pareto import pareto_shape, smoothed
+from skinbayes.sampling.weighted_draws import POINTS, TAILS, Evaluate, ImportanceDraws, Rounds, weighed
+from skinbayes.statistics.pareto import pareto_shape
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
-
-Evaluate = Callable[[FloatArray], FloatArray]
-"""Log-density at positions ``(B, D)``, −inf where impossible."""
-
-POINTS = 2000
-"""Explored positions of each ensemble that the mixture is fitted to."""
-
-WIDE_WEIGHT, WIDE_VOLUME, LEAST_STRETCH, MOST_STRETCH = 0.2, 250.0, 1.3, 2.5
-"""A component about the whole, of so many times its volume, gets this part of all draws; it is wider by a factor between two. Of
-much more volume it would have hardly any draws where the weights become large."""
 
 ROUNDS = 12
 """Rounds of draws at most."""
+
+REFUSALS = 3
+"""Times that enough draws are refused before they are given up: what still speaks against them more draws do not cure."""
 
 GROWTH = 1.5
 """A round has so many times as many draws as the one before, or fewer if that is enough."""
@@ -43,40 +38,26 @@ GROWTH = 1.5
 WORTHWHILE = 0.03
 """Effective draws for each evaluation that are worth to begin with; walkers give as many."""
 
+EXPLORED_WEIGHT = 0.2
+"""Part of the next draws that a place gets that was missed and then explored."""
+
 LARGEST_SHAPE = 0.5
 """Largest k̂ of the weights, and of those below and above the median of each coordinate, at which draws are accepted."""
 
-TAILS = np.array([0.05, 0.5, 0.95])
-"""Quantiles in which ensembles and weighted draws have to agree."""
 
-
-@dataclass(frozen=True)
-class ImportanceDraws:
-    """Weighted draws that were accepted.
+class Refusal(NamedTuple):
+    """Why draws were not accepted.
 
     Attributes
     ----------
-    positions : shape ``(N, D)``
-    log_density : of the target, shape ``(N,)``
-    log_weights : Pareto-smoothed, up to a constant, shape ``(N,)``
-    log_proposal : ln of the density that they were drawn from, shape ``(N,)``
-    proposals : what either half of them, every second one, was drawn from
-    shape : k̂ of the weights
-    ess, tail_ess : effective sample sizes of the mean, and the smaller of the 5 % and 95 % quantiles, of each coordinate
+    why : a sentence
+    tried : how many were made
+    pending : the attempt, if ensembles that have moved on may change the verdict on the same draws
     """
 
-    positions: FloatArray
-    log_density: FloatArray
-    log_weights: FloatArray
-    log_proposal: FloatArray
-    proposals: tuple[StudentMixture, StudentMixture]
-    shape: float
-    ess: FloatArray
-    tail_ess: FloatArray
-
-    def lacking(self, ess: float) -> float:
-        """How many times as many draws it takes for an effective sample size; at most 1 if these do."""
-        return float(max(ess / self.ess.min(), TAIL_FRACTION * ess / self.tail_ess.min()))
+    why: str
+    tried: int
+    pending: Attempt | None = None
 
 
 def importance_draws(
@@ -87,7 +68,8 @@ def importance_draws(
     rng: np.random.Generator,
     least: int = 0,
     agree: bool = True,
-) -> ImportanceDraws | tuple[str, int]:
+    search: Search | None = None,
+) -> ImportanceDraws | Refusal:
     """Draw from a target that ensembles have explored.
 
     Parameters
@@ -99,10 +81,11 @@ def importance_draws(
     rng : source of all randomness
     least : number of draws that are made at least
     agree : whether the ensembles agree; if not, the mixture is fitted to and examined with every second position of each
+    search : looks for what ensembles and proposals have missed; None does not look
 
     Returns
     -------
-    the draws, or in a sentence why there are none, and how many were tried
+    the draws, or why there are none
     """
     visited = list(map(_visited, explored, explored_density))
     # a walker, or a whole ensemble, that is left behind in a place of next to no posterior is no draw of it
@@ -120,105 +103,107 @@ def importance_draws(
     mixture = fit_mixture(first, second, rng)
     # positions of ensembles in different modes are no draws of the target, and foresee nothing
     if agree and (foreseen := _foreseen(held_out - mixture.log_density(second))) < WORTHWHILE:
-        return f"a proposal would give {foreseen:.2g} effective draws for each evaluation", 0
+        return Refusal(f"a proposal would give {foreseen:.2g} effective draws for each evaluation", 0)
     everything = np.concatenate([first, second])
     mixture = mixture.refitted(everything, np.ones(len(everything)))
-    sides = (_Rounds(mixture), _Rounds(mixture))
-    size, against = max(200, 30 * explored.shape[-1]), None
-    for number in range(ROUNDS):
-        for side in sides:
-            side.draw(size, evaluate, rng)
-        found = _weighed(sides)
-        count = len(found.positions)
-        lacking = max(found.lacking(ess), least / count)
-        if lacking <= 1.0 and (against := next(_against(found, explored, explored_density), None)) is None:
-            return found
-        if number > 4 and count > (2.0 / WORTHWHILE) * found.ess.min():
-            break
-        fitted = [side.refitted(rng) for side in sides]
-        for side, mixture in zip(sides, reversed(fitted), strict=True):
-            side.mixture = mixture
-        size = int(np.ceil(min(GROWTH * size, max(1.1 * lacking - 1.0, 0.2) * count / 2)))
-    return against or f"the effective sample size of {count} draws is {found.ess.min():.0f}", count
+    return Attempt(mixture, evaluate, search, rng).go_on(explored, explored_density, ess, least)
 
 
-class _Rounds:
-    """Draws of several proposals, weighted as draws of their mixture.
+class Attempt:
+    """Rounds of draws, until they are enough and nothing speaks against them, or they are given up.
 
-    Attributes
-    ----------
-    mixture : what the next round is drawn from, but for a wide component
-    positions, log_density : all draws, and the target there
-    proposal, log_proposal : what all of them together were drawn from, and ln of its density there
+    Where only the quantiles of the ensembles do, which may not have come to their ends yet, the attempt can be gone on with when
+    the ensembles have moved: no draw is made in vain.
     """
 
-    def __init__(self, mixture: StudentMixture) -> None:
-        self.mixture = mixture
-        self.positions = np.empty((0, mixture.dimension))
-        self.log_density = np.empty(0)
-        self.proposal, self.log_proposal = mixture, np.empty(0)
-        self._proposals: list[StudentMixture] = []
-        self._counts: list[int] = []
+    def __init__(
+        self, mixture: StudentMixture, evaluate: Evaluate, search: Search | None, rng: np.random.Generator
+    ) -> None:
+        self._begun, self._evaluate, self._search, self._rng = mixture, evaluate, search, rng
+        (self._searching,) = rng.spawn(1)  # draws are the same whatever was searched
+        self._sides = (Rounds(mixture), Rounds(mixture))
+        self._size = max(200, 30 * mixture.dimension)
+        self._parts: StudentMixture | None = None
+        self._beside: list[tuple[FloatArray, FloatArray]] = []
+        self._looked = self._false_alarm = False
 
-    def draw(self, count: int, evaluate: Evaluate, rng: np.random.Generator) -> None:
-        proposal = _widened(self.mixture)
-        new = proposal.draw(count, rng)
-        self.positions = np.concatenate([self.positions, new])
-        self.log_density = np.append(self.log_density, evaluate(new))
-        self._proposals.append(proposal)
-        self._counts.append(count)
-        self.proposal = StudentMixture.of(self._proposals, self._counts)
-        self.log_proposal = self.proposal.log_density(self.positions)
-
-    def refitted(self, rng: np.random.Generator) -> StudentMixture:
-        """The mixture fitted anew to the draws."""
-        log_ratios = self.log_density - self.log_proposal
-        weights = np.exp(log_ratios - log_ratios.max())
-        count = len(weights)
-        # draws with weights far above the others would teach the mixture themselves only
-        weights = np.minimum(weights, weights.sum() / np.sqrt(count))
-        if weights.sum() ** 2 / np.square(weights).sum() < POINTS / 4:
-            return self.mixture.refitted(self.positions, weights)
-        # as many components as they can tell; a draw chosen twice is in one half only
-        part = rng.random(count) < 0.5
-        first, second = (self._chosen(weights * chosen, rng) for chosen in (part, ~part))
-        return fit_mixture(first, second, rng)
-
-    def _chosen(self, weights: FloatArray, rng: np.random.Generator) -> FloatArray:
-        size = min(POINTS, len(weights) // 2)
-        return np.asarray(self.positions[rng.choice(len(weights), size=size, p=weights / weights.sum())])
-
-
-def _widened(mixture: StudentMixture) -> StudentMixture:
-    stretch = np.clip(WIDE_VOLUME ** (1.0 / mixture.dimension), LEAST_STRETCH, MOST_STRETCH)
-    return mixture.with_wide_component(WIDE_WEIGHT, float(stretch))
-
-
-def _weighed(sides: tuple[_Rounds, _Rounds]) -> ImportanceDraws:
-    proposals = (sides[0].proposal, sides[1].proposal)
-    positions, log_density, log_proposal = (
-        np.stack(pair, axis=1).reshape(-1, *pair[0].shape[1:])
-        for pair in zip(
-            *((side.positions, side.log_density, side.log_proposal) for side in sides), strict=True
+    def go_on(
+        self, explored: FloatArray, explored_density: FloatArray, ess: float, least: int = 0
+    ) -> ImportanceDraws | Refusal:
+        """Draw on, and hold the draws against what was explored; arguments as those of :func:`importance_draws`."""
+        self._beside += map(_visited, explored, explored_density)
+        refusals, against, drawn = 0, "", bool(self._sides[0].log_density.size)
+        for number in range(ROUNDS):
+            if number or not drawn:
+                for side in self._sides:
+                    side.draw(self._size, self._evaluate, self._rng)
+            found = replace(weighed(self._sides), search=self._search)
+            count = len(found.positions)
+            lacking = max(found.lacking(ess), least / count)
+            if self._explored(found, number, lacking <= 1.0, explored_density.size):
+                continue
+            if lacking <= 1.0 or (drawn and number == 0):
+                if behind := _behind(found, explored, self._begun, self._parts):
+                    return Refusal(behind, count, self)
+                if lacking <= 1.0:
+                    against = next(_against(found, explored, explored_density), "")
+                    if not against:
+                        return found
+                    refusals += 1
+                    if refusals == REFUSALS:
+                        break
+            if number > 2 and count > (2.0 / WORTHWHILE) * found.ess.min():
+                break
+            fitted = [side.refitted(self._rng) for side in self._sides]
+            for side, mixture in zip(self._sides, reversed(fitted), strict=True):
+                side.mixture = mixture
+            more = max(1.1 * lacking - 1.0, 0.2) * count / 2
+            self._size = int(np.ceil(min(GROWTH * self._size, more)))
+        return Refusal(
+            against or f"the effective sample size of {count} draws is {found.ess.min():.0f}", count
         )
-    )
-    log_weights, shape = smoothed(log_density - log_proposal)
-    weights = np.exp(log_weights - log_weights.max())
-    mean = weights @ positions / weights.sum()
-    ends = np.array([weighted_quantiles(column, weights, TAILS[[0, 2]]) for column in positions.T])
-    tails = np.array([_effective((positions <= ends[:, end]).astype(np.float64), weights) for end in (0, 1)])
-    return ImportanceDraws(
-        positions, log_density, log_weights, log_proposal, proposals, shape,
-        _effective(positions - mean, weights), tails.min(axis=0),
-    )  # fmt: skip
+
+    def _explored(self, found: ImportanceDraws, number: int, enough: bool, steps: int) -> bool:
+        """Whether a place that was missed has turned up; it was then explored, and the next draws go there too."""
+        search = self._search
+        if search is None:
+            return False
+        whole = self._sides[0].mixture.as_one()
+        if enough and not self._looked:
+            self._beside.append(search.look(whole, steps + len(found.positions), self._searching))
+            self._looked = True
+        # in its first rounds a proposal misses much that it will find
+        place = _missed(found, self._beside) if enough else _fallen_into(found) if number > 1 else None
+        if place is None or self._false_alarm or search.explorations >= EXPLORATIONS:
+            return False
+        there = search.explore(place, whole.factors[0], found.surprise, self._searching)
+        # walkers that came to where everything is known have found a tail of it, no part of its own
+        self._false_alarm = enough and bool(np.median(found.surprise(*there)) < 0.0)
+        if self._false_alarm:
+            return False
+        search.explorations += 1
+        self._beside.append(there)
+        part = fit_mixture(there[0][::2], there[0][1::2], self._searching)
+        self._parts = part if self._parts is None else self._parts.with_part(part, 0.5)
+        for side in self._sides:
+            side.mixture = side.mixture.with_part(part, EXPLORED_WEIGHT)
+        self._size = max(self._size, len(found.positions) // 4)
+        return True
 
 
-def _effective(values: FloatArray, weights: FloatArray) -> FloatArray:
-    """Independent draws with which the mean of each column would be known as well, shape ``(D,)``."""
-    apart = values - weights @ values / weights.sum()
-    variance = weights @ np.square(apart) / weights.sum()
-    error = np.square(weights) @ np.square(apart) / weights.sum() ** 2
-    return np.asarray(variance / error)
+def _missed(found: ImportanceDraws, beside: list[tuple[FloatArray, FloatArray]]) -> FloatArray | None:
+    """The place at which the target most exceeds what the draws lead to expect, if a part of it can have been missed there."""
+    positions, log_density = (np.concatenate(arrays) for arrays in zip(*beside, strict=True))
+    surprise = found.surprise(positions, log_density)
+    return np.asarray(positions[np.argmax(surprise)]) if surprise.max() > 0.0 else None
+
+
+def _fallen_into(found: ImportanceDraws) -> FloatArray | None:
+    """The place of a draw that has a tenth of all weight."""
+    ratios = found.log_density - found.log_proposal
+    heaviest = int(np.argmax(ratios))
+    alone = ratios[heaviest] - logsumexp(ratios) > np.log(0.1)
+    return np.asarray(found.positions[heaviest]) if alone else None
 
 
 def _foreseen(log_ratios: FloatArray) -> float:
@@ -235,18 +220,17 @@ def _visited(chain: FloatArray, log_density: FloatArray) -> tuple[FloatArray, Fl
 
 
 def _against(found: ImportanceDraws, explored: FloatArray, explored_density: FloatArray) -> Iterator[str]:
-    """What speaks against accepting draws, one sentence each."""
+    """What speaks against accepting draws and more of them may cure, one sentence each."""
     if not found.shape <= LARGEST_SHAPE:
         yield f"the weights are too uneven (Pareto k {found.shape:.2f}, at most {LARGEST_SHAPE} is accepted)"
     weights = np.exp(found.log_weights - found.log_weights.max())
-    quantiles = np.array([weighted_quantiles(x, weights, TAILS) for x in found.positions.T])
-    for column, (x, ends) in enumerate(zip(found.positions.T, quantiles, strict=True)):
-        for tail in (x <= ends[1], x >= ends[1]):
+    for column, x in enumerate(found.positions.T):
+        middle = weighted_quantiles(x, weights, 0.5)
+        for tail in (x <= middle, x >= middle):
             if not (shape := pareto_shape(weights[tail])) <= LARGEST_SHAPE:
                 yield f"the weights are too uneven in a tail of coordinate {column + 1} (Pareto k {shape:.2f})"
     # where the proposal is missing something that ensembles have found, their ratios exceed all those of the draws
     highest = (found.log_density - found.log_proposal).max()
-    below = []
     for chain, density in zip(explored, explored_density, strict=True):
         visited, its_density = _visited(chain, density)
         proposal = StudentMixture.of(found.proposals, [1, 1]).log_density(visited)
@@ -254,19 +238,34 @@ def _against(found: ImportanceDraws, explored: FloatArray, explored_density: Flo
         # one walker that hardly moved is no mode
         if beyond.sum() >= 5 and beyond.mean() > 0.01:
             yield f"{beyond.mean():.0%} of the positions of an ensemble lie where the proposal has hardly any draws"
-        below.append((chain[:, :, np.newaxis] < quantiles).mean(axis=0))
-    fractions = np.array(below)
+
+
+def _behind(
+    found: ImportanceDraws, explored: FloatArray, begun: StudentMixture, parts: StudentMixture | None
+) -> str:
+    """In which quantile ensembles and draws disagree, in a sentence; empty if in none.
+
+    What was found only by a search, ``parts`` beside the proposal that was ``begun`` with, is not expected of the ensembles.
+    """
+    log_weights = found.log_weights - found.log_weights.max()
+    if parts is not None:
+        log_weights = log_weights + log_expit(
+            begun.log_density(found.positions) - parts.log_density(found.positions)
+        )
+    quantiles = np.array([weighted_quantiles(x, np.exp(log_weights), TAILS) for x in found.positions.T])
+    fractions = np.array([(chain[:, :, np.newaxis] < quantiles).mean(axis=0) for chain in explored])
     count = len(fractions)
     # of four ensembles, with all quantiles of all coordinates taken into account
     spread = fractions.std(axis=0, ddof=1) / np.sqrt(count)
     often = float(stdtrit(count - 1, 1 - 0.005 / fractions[0].size))
     far = np.abs(fractions.mean(axis=0) - TAILS) > often * spread + 0.01
-    if far.any():
-        column, place = np.argwhere(far)[0]
-        yield (
-            f"{fractions.mean(axis=0)[column, place]:.1%} of the explored positions lie below the {TAILS[place]:.0%} quantile "
-            f"of coordinate {column + 1}"
-        )
+    if not far.any():
+        return ""
+    column, place = np.argwhere(far)[0]
+    return (
+        f"{fractions.mean(axis=0)[column, place]:.1%} of the explored positions lie below the {TAILS[place]:.0%} quantile "
+        f"of coordinate {column + 1}"
+    )
 
 
 def _evenly(count: int, most: int) -> np.ndarray:

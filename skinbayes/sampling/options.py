@@ -73,6 +73,7 @@ class SamplerOptions(EngineOptions):
         ``importance``)
     importance : let the walkers only find the posterior, and draw from it by importance sampling as soon as that is accepted
         (see ``skinbayes.sampling.importance``); also gives ln of the evidence
+    search : positions at which to look for parts that were missed, for each evaluation that was made before; 0 does not look
 
     Examples
     --------
@@ -89,6 +90,7 @@ class SamplerOptions(EngineOptions):
     max_steps: int = MAX_STEPS
     block_steps: int = None  # type: ignore[assignment]  # filled in below
     importance: bool = True
+    search: float = 0.1
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -104,6 +106,8 @@ class SamplerOptions(EngineOptions):
         whole("block_steps", self.block_steps, 1)
         whole("max_steps", self.max_steps, self.block_steps)
         _above("r_hat", self.r_hat, 1.0)
+        if self.search != 0:
+            _above("search", self.search, 0.0)
         _above("steps_over_tau", self.steps_over_tau, 0.0)
 
     def check(self, dimension: int) -> None:

@@ -76,17 +76,30 @@ class StudentMixture:
             np.concatenate([one.degrees_of_freedom for one in mixtures]),
         )
 
-    def with_wide_component(self, weight: float, stretch: float) -> StudentMixture:
-        """Add a component with the mean and ``stretch`` times the spread of the whole: it bounds weights in the far tails."""
+    def as_one(self) -> StudentMixture:
+        """One component with the mean of all, and their covariance (of the scale matrices) as its scale matrix."""
         mean = self.weights @ self.means
         apart = self.means - mean
         covariance = np.einsum("k,kij,klj->il", self.weights, self.factors, self.factors)
         covariance += np.einsum("k,ki,kj->ij", self.weights, apart, apart)
+        factor = np.linalg.cholesky(covariance)
         return StudentMixture(
-            np.append((1 - weight) * self.weights, weight),
-            np.concatenate([self.means, mean[np.newaxis]]),
-            np.concatenate([self.factors, stretch * np.linalg.cholesky(covariance)[np.newaxis]]),
-            np.append(self.degrees_of_freedom, DEGREES_OF_FREEDOM[0]),
+            np.ones(1), mean[np.newaxis], factor[np.newaxis], np.array([DEGREES_OF_FREEDOM[0]])
+        )
+
+    def with_wide_component(self, weight: float, stretch: float) -> StudentMixture:
+        """Add a component with the mean and ``stretch`` times the spread of the whole: it bounds weights in the far tails."""
+        wide = self.as_one()
+        wide = StudentMixture(wide.weights, wide.means, stretch * wide.factors, wide.degrees_of_freedom)
+        return self.with_part(wide, weight)
+
+    def with_part(self, other: StudentMixture, weight: float) -> StudentMixture:
+        """Add another mixture, which gets a part ``weight`` of all draws."""
+        return StudentMixture(
+            np.append((1 - weight) * self.weights, weight * other.weights),
+            np.concatenate([self.means, other.means]),
+            np.concatenate([self.factors, other.factors]),
+            np.append(self.degrees_of_freedom, other.degrees_of_freedom),
         )
 
     def refitted(self, x: FloatArray, weights: FloatArray) -> StudentMixture:

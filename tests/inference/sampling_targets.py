@@ -45,6 +45,9 @@ class UnitGaussian:
     def starts(self, rng, count):
         return self.shift + self.spread * rng.normal(size=(count, self.dimension))
 
+    def prior_transform(self, unit):
+        return self.shift + self.spread * ndtri(unit)
+
     def integrated_out(self, position, rng):
         return {}
 

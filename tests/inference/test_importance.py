@@ -15,9 +15,10 @@ from scipy.stats import t as student
 from skinbayes.sampling.draws import Draws, weighted_quantiles
 from skinbayes.sampling.ensemble_engine import EnsembleEngine
 from skinbayes.sampling.evidence import bridge
-from skinbayes.sampling.importance import ImportanceDraws, importance_draws
+from skinbayes.sampling.importance import Refusal, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.store import SampleStore
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 from skinbayes.statistics.pareto import smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
 
@@ -42,6 +43,9 @@ class Known:
 
     def starts(self, rng, count):
         return self.spread * rng.normal(size=(count, self.dimension))
+
+    def prior_transform(self, unit):
+        return self.spread * norm.ppf(unit)
 
     def integrated_out(self, position, rng):
         return {}
@@ -169,7 +173,7 @@ def test_a_run_resumed_after_refused_draws_tries_when_it_would_have(tmp_path: Pa
 
     def at_first_refused(chains, *arguments):
         fresh = chains.shape[1] < 16 * 25  # the later half of the first 25 steps
-        return ("too uneven", 10_000) if fresh else importance_draws(chains, *arguments)
+        return Refusal("too uneven", 10_000) if fresh else importance_draws(chains, *arguments)
 
     monkeypatch.setattr(finish, "importance_draws", at_first_refused)
     target = Known(normal, 4)
@@ -180,6 +184,29 @@ def test_a_run_resumed_after_refused_draws_tries_when_it_would_have(tmp_path: Pa
 
     def stop(progress):
         if progress.steps >= 50:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        EnsembleEngine().run(target, options, SampleStore(tmp_path / "steps"), stop)
+    resumed = EnsembleEngine().run(target, options, SampleStore(tmp_path / "steps", resume=True))
+    np.testing.assert_array_equal(whole.samples, resumed.samples)
+    assert whole.diagnostics["evaluations"] == resumed.diagnostics["evaluations"]
+
+
+def test_draws_that_wait_for_ensembles_are_the_same_when_resumed(tmp_path: Path, monkeypatch):
+    from skinbayes.sampling import importance
+
+    def lagging(found, explored, *others):
+        return "they lag behind" if explored.shape[1] < 16 * 25 else behind(found, explored, *others)
+
+    behind = importance._behind
+    monkeypatch.setattr(importance, "_behind", lagging)
+    target, options = Known(normal, 4), SamplerOptions(seed=5, ess=1000, walkers=16)
+    whole = EnsembleEngine().run(target, options)
+    assert whole.diagnostics["steps"] == 50
+
+    def stop(progress):
+        if progress.steps >= 25:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
