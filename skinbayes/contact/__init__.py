@@ -33,6 +33,7 @@ from skinbayes.contact.solid import (
 )
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.contact.viscoelastic import Creep, ViscoelasticMaterial
+from skinbayes.contact.viscoelastic_line_contact import ViscoelasticLine, viscoelastic_line_contact
 from skinbayes.contact.viscoelastic_materials import (
     constant_loss_solid,
     material_of_dynamic_moduli,
@@ -53,6 +54,7 @@ __all__ = [
     "HertzSphere",
     "HomogeneousSolid",
     "LayeredSkin",
+    "ViscoelasticLine",
     "ViscoelasticMaterial",
     "ViscoelasticSkin",
     "constant_loss_solid",
@@ -79,4 +81,5 @@ __all__ = [
     "total_contact_area",
     "twice_stress_variance",
     "validate_solid",
+    "viscoelastic_line_contact",
 ]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ComplexArray, FloatArray
+from skinbayes.arrays import FloatArray
 from skinbayes.contact.solid import plane_strain
 from skinbayes.roughness._fields import Floats, hold_floats, remembering_numbers, with_axes
 
@@ -138,8 +138,8 @@ def inverse_response_of(parts: Contrast, x: FloatArray) -> FloatArray:
 
 
 def contrast(
-    stiff: FloatArray | ComplexArray,
-    soft: FloatArray | ComplexArray,
+    stiff: Any,
+    soft: Any,
     *,
     poisson_ratio_layer: FloatArray,
     poisson_ratio_bulk: FloatArray,
