@@ -33,6 +33,12 @@ from skinbayes.contact.solid import (
 )
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.contact.viscoelastic import Creep, ViscoelasticMaterial
+from skinbayes.contact.viscoelastic_indentation import (
+    IndentationCycle,
+    indentation_creep,
+    indentation_cycle,
+    indentation_relaxation,
+)
 from skinbayes.contact.viscoelastic_line_contact import ViscoelasticLine, viscoelastic_line_contact
 from skinbayes.contact.viscoelastic_materials import (
     constant_loss_solid,
@@ -53,6 +59,7 @@ __all__ = [
     "HertzLine",
     "HertzSphere",
     "HomogeneousSolid",
+    "IndentationCycle",
     "LayeredSkin",
     "ViscoelasticLine",
     "ViscoelasticMaterial",
@@ -67,6 +74,9 @@ __all__ = [
     "ellipse_factors",
     "elliptic_contact",
     "gap_distribution",
+    "indentation_creep",
+    "indentation_cycle",
+    "indentation_relaxation",
     "layered_modulus",
     "line_contact",
     "material_of_dynamic_moduli",
