@@ -65,7 +65,8 @@ def moving_kernel(
 
     References
     ----------
-    Hunter, J. Appl. Mech. 28 (1961) 611, doi 10.1115/1.3641795.
+    Hunter, J. Appl. Mech. 28 (1961) 611.
+    Johnson, Contact Mechanics (1985), Sect. 9.4, doi 10.1017/CBO9781139171731.
 
     Examples
     --------

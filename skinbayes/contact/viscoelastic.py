@@ -54,7 +54,7 @@ class ViscoelasticMaterial:
 
     References
     ----------
-    Christensen, Theory of Viscoelasticity (1982), Chap. 1, doi 10.1016/B978-0-12-174252-2.X5001-7.
+    Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity (2010), Chap. 2, doi 10.1142/p614.
 
     Examples
     --------

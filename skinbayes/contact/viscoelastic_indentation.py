@@ -42,7 +42,7 @@ class IndentationCycle:
 def indentation_cycle(
     rate: float, depth: float, *, sphere_radius: float, material: ViscoelasticMaterial
 ) -> IndentationCycle:
-    """Press a rigid ball into a viscoelastic half-space and draw it back, both at the same rate.
+    """Press a rigid ball into a viscoelastic half-space and draw it back (the experiment quoted in Sect. 6.2 of the paper).
 
     While the contact grows ``F = (4√R/3) ∫ E*(t − s) d(δ^(3/2))`` with ``a² = R δ`` (Lee and Radok). While it shrinks the
     contact at t is that of an earlier time t1 with ``∫_(t1)^t E*(t − s) dδ = 0``, and the integral for F ends at t1 (Ting).
@@ -70,8 +70,9 @@ def indentation_cycle(
 
     References
     ----------
-    Lee & Radok, J. Appl. Mech. 27 (1960) 438, doi 10.1115/1.3644020.
-    Ting, J. Appl. Mech. 33 (1966) 845, doi 10.1115/1.3625192.
+    Lee & Radok, J. Appl. Mech. 27 (1960) 438.
+    Ting, J. Appl. Mech. 33 (1966) 845.
+    Johnson, Contact Mechanics (1985), Sect. 6.5, doi 10.1017/CBO9781139171731.
 
     Examples
     --------
@@ -142,7 +143,8 @@ def indentation_creep(
 
     References
     ----------
-    Lee & Radok, J. Appl. Mech. 27 (1960) 438, doi 10.1115/1.3644020.
+    Lee & Radok, J. Appl. Mech. 27 (1960) 438.
+    Johnson, Contact Mechanics (1985), Sect. 6.5, doi 10.1017/CBO9781139171731.
 
     Examples
     --------
@@ -176,7 +178,8 @@ def indentation_relaxation(
 
     References
     ----------
-    Lee & Radok, J. Appl. Mech. 27 (1960) 438, doi 10.1115/1.3644020.
+    Lee & Radok, J. Appl. Mech. 27 (1960) 438.
+    Johnson, Contact Mechanics (1985), Sect. 6.5, doi 10.1017/CBO9781139171731.
 
     Examples
     --------

@@ -39,7 +39,7 @@ def standard_linear_solid(
 
     References
     ----------
-    Christensen, Theory of Viscoelasticity (1982), Chap. 1, doi 10.1016/B978-0-12-174252-2.X5001-7.
+    Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity (2010), Chap. 2, doi 10.1142/p614.
 
     Examples
     --------
@@ -137,9 +137,9 @@ def constant_loss_solid(
 
 def material_of_dynamic_moduli(
     angular_frequency: ArrayLike,
+    *,
     storage_modulus: ArrayLike,
     loss_modulus: ArrayLike,
-    *,
     tolerance: float = 0.05,
     poisson_ratio: float = 0.5,
 ) -> ViscoelasticMaterial:
@@ -178,7 +178,9 @@ def material_of_dynamic_moduli(
     Examples
     --------
     >>> frequency = np.array([0.1, 1.0, 10.0, 100.0])
-    >>> tissue = material_of_dynamic_moduli(frequency, 20e3 * frequency**0.1, 3.17e3 * frequency**0.1)
+    >>> tissue = material_of_dynamic_moduli(
+    ...     frequency, storage_modulus=20e3 * frequency**0.1, loss_modulus=3.17e3 * frequency**0.1
+    ... )
     >>> print(f"{tissue.complex_modulus(10.0):.0f}")
     25179+3990j
     """

@@ -30,10 +30,10 @@ class ViscoelasticFilms:
     asperity_pressure : p_a(x), Pa, shape ``(K, N)``
     couette : friction coefficient of the shear flow, ∫φ ηv/u dx/f_N, dimensionless, shape ``(K,)``
     pressure_flow : friction coefficient of the pressure flow, ½∫u dp_f/f_N, dimensionless, shape ``(K,)``
-    hysteresis : friction coefficient of the solid's loss, ∫p (dw/dx) dx/f_N with its depth w, dimensionless, shape ``(K,)``
     asperity_load_fraction : load carried by asperities over load, dimensionless, shape ``(K,)``
     minimum_film : smallest ū, m, shape ``(K,)``
     central_film : ū under the middle of the cylinder, m, shape ``(K,)``
+    hysteresis : friction coefficient of the solid's loss, ∫p (dw/dx) dx/f_N with its depth w, dimensionless, shape ``(K,)``
     reference_modulus : |E*| at the frequency v/b, Pa, shape ``(K,)``
     half_width : b of the line contact with that modulus, m, shape ``(K,)``
     load_weight : weights that integrate over x, m, shape ``(K, N)``
@@ -45,10 +45,10 @@ class ViscoelasticFilms:
     asperity_pressure: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    hysteresis: FloatArray
     asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
+    hysteresis: FloatArray
     reference_modulus: FloatArray
     half_width: FloatArray
     load_weight: FloatArray
@@ -101,7 +101,7 @@ def viscoelastic_films(
     References
     ----------
     Persson & Scaraggi, J. Phys.: Condens. Matter 21 (2009) 185002, doi 10.1088/0953-8984/21/18/185002.
-    Hunter, J. Appl. Mech. 28 (1961) 611, doi 10.1115/1.3641795.
+    Hunter, J. Appl. Mech. 28 (1961) 611.
 
     Examples
     --------

@@ -93,7 +93,7 @@ def viscoelastic_stribeck_curve(
     References
     ----------
     Persson, Kovalev & Gorb, Tribol. Lett. 50 (2013) 17, doi 10.1007/s11249-012-0053-2 (Sect. 6).
-    Hunter, J. Appl. Mech. 28 (1961) 611, doi 10.1115/1.3641795.
+    Hunter, J. Appl. Mech. 28 (1961) 611.
 
     Examples
     --------

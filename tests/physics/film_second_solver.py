@@ -87,10 +87,15 @@ class Solver:
         """States at rising λ, walking down to the first from λ = ``start``."""
         guess = np.sqrt(np.maximum(1 - self.x**2, 0))
         state = np.append(guess * LOAD / (self.step * guess.sum()), 0.0)
-        state[-1] = start - self.film(state).min()
-        found = self.newton(state, 1.0, 400)
+        shape = self.film(state).min()
+        found, first = None, 1.0
+        for first, thicker in ((1.0, 1.0), (2.0, 1.0), (0.5, 1.0), (1.0, 2.0), (2.0, 2.0)):
+            state[-1] = thicker * start - shape
+            found = self.newton(state, first, 200)
+            if found is not None:
+                break
         assert found is not None
-        for number in np.geomspace(1.0, numbers[0], 40)[1:]:
+        for number in np.geomspace(first, numbers[0], 40)[1:]:
             found = self.newton(found, number)
             assert found is not None
         states = [found]

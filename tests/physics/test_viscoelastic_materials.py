@@ -109,18 +109,20 @@ def test_the_loss_angle_is_constant(loss_tangent: float) -> None:
 def test_a_table_gives_back_its_material() -> None:
     omega = np.geomspace(1e-2, 1e2, 25)
     measured = BROAD.complex_modulus(omega)
-    found = material_of_dynamic_moduli(omega, measured.real, measured.imag, poisson_ratio=0.4)
+    found = material_of_dynamic_moduli(
+        omega, storage_modulus=measured.real, loss_modulus=measured.imag, poisson_ratio=0.4
+    )
     between = np.geomspace(2e-2, 50, 77)
     np.testing.assert_allclose(found.complex_modulus(between), BROAD.complex_modulus(between), rtol=2e-3)
     time = np.geomspace(0.02, 50, 20)
     np.testing.assert_allclose(found.relaxation_modulus(time), BROAD.relaxation_modulus(time), rtol=3e-3)
     # a loss modulus without the rise of the storage modulus that belongs to it
     with pytest.raises(InputError, match="not those of one linear viscoelastic material"):
-        material_of_dynamic_moduli(omega, np.full(25, 2e4), np.full(25, 1e4))
+        material_of_dynamic_moduli(omega, storage_modulus=np.full(25, 2e4), loss_modulus=np.full(25, 1e4))
     with pytest.raises(InputError, match="rise"):
-        material_of_dynamic_moduli(omega[::-1], measured.real, measured.imag)
+        material_of_dynamic_moduli(omega[::-1], storage_modulus=measured.real, loss_modulus=measured.imag)
     with pytest.raises(InputError, match="same two or more"):
-        material_of_dynamic_moduli(omega, measured.real, measured.imag[1:])
+        material_of_dynamic_moduli(omega, storage_modulus=measured.real, loss_modulus=measured.imag[1:])
 
 
 def test_a_batch_and_its_rows_agree() -> None:
