@@ -14,6 +14,7 @@ from skinbayes.contact.gaps import GapDistribution, gap_distribution
 from skinbayes.contact.hertz import HertzSphere, sphere_contact
 from skinbayes.contact.homogeneous import HomogeneousSolid
 from skinbayes.contact.layered import LayeredSkin
+from skinbayes.contact.layers import layered_modulus
 from skinbayes.contact.line_contact import (
     EquivalentCylinder,
     HertzLine,
@@ -31,10 +32,25 @@ from skinbayes.contact.solid import (
     validate_solid,
 )
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.contact.viscoelastic import Creep, ViscoelasticMaterial
+from skinbayes.contact.viscoelastic_indentation import (
+    IndentationCycle,
+    indentation_creep,
+    indentation_cycle,
+    indentation_relaxation,
+)
+from skinbayes.contact.viscoelastic_line_contact import ViscoelasticLine, viscoelastic_line_contact
+from skinbayes.contact.viscoelastic_materials import (
+    constant_loss_solid,
+    material_of_dynamic_moduli,
+    standard_linear_solid,
+)
+from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 
 __all__ = [
     "AREA_CORRECTION",
     "ContactArea",
+    "Creep",
     "ElasticSolid",
     "EllipseFactors",
     "EquivalentCylinder",
@@ -43,7 +59,12 @@ __all__ = [
     "HertzLine",
     "HertzSphere",
     "HomogeneousSolid",
+    "IndentationCycle",
     "LayeredSkin",
+    "ViscoelasticLine",
+    "ViscoelasticMaterial",
+    "ViscoelasticSkin",
+    "constant_loss_solid",
     "corrected_twice_stress_variance",
     "cylinder_of_contact",
     "cylinder_of_ellipse",
@@ -53,15 +74,22 @@ __all__ = [
     "ellipse_factors",
     "elliptic_contact",
     "gap_distribution",
+    "indentation_creep",
+    "indentation_cycle",
+    "indentation_relaxation",
+    "layered_modulus",
     "line_contact",
+    "material_of_dynamic_moduli",
     "mean_separation",
     "persson_contact_area",
     "pressure_at_separation",
     "reduced_modulus",
     "relative_contact_area",
     "sphere_contact",
+    "standard_linear_solid",
     "surface_response",
     "total_contact_area",
     "twice_stress_variance",
     "validate_solid",
+    "viscoelastic_line_contact",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -71,15 +71,8 @@ class LayeredSkin:
         1 ≤ E0/E1 ≤ 1e7 and below 1e-9 down to E0/E1 = 1e-7 (Eq. 4 evaluated as printed loses six to eight digits for a stiff
         layer).
         """
-        at_zero, ground, linear, product, four_m = (with_axes(x, axes) for x in _contrast(self))
-        # beyond _DEEP the half-space is not felt, and inf times 0 has no value
-        x = np.minimum(wavevector * with_axes(self.layer_thickness, axes), _DEEP)
-        rise = np.expm1(-2.0 * x)  # −g
-        bending = four_m * (x * (1.0 + rise))
-        part = product * rise
-        numerator = at_zero - part * (2.0 + rise) + bending
-        denominator = ground + rise * (part - linear) - bending * x
-        return np.asarray(denominator / numerator)
+        parts = Contrast(*(with_axes(x, axes) for x in _contrast(self)))
+        return inverse_response_of(parts, wavevector * with_axes(self.layer_thickness, axes))
 
     def compliance_fall(self, wavevector: FloatArray) -> tuple[FloatArray, FloatArray]:
         """φ = 1/(q E_eff), m/Pa, and ``−dφ/dln q``, batch shape plus the axis of ``wavevector`` (1/m)."""
@@ -116,7 +109,7 @@ def _poisson(nu0: FloatArray, nu1: FloatArray) -> _Poisson:
     return _Poisson(shear, layer, layer * layer, 3 - 4 * nu1, 4 - 4 * nu1)
 
 
-class _Contrast(NamedTuple):
+class Contrast(NamedTuple):
     """What Eq. 4 needs of the materials: ``S = (c + mn g(1+e) + 4mxe)/(a + b g + mn g² − 4mx²e)``, g = 1 − e, e = exp(−2x).
 
     All are multiplied by the denominators of m = M/(r + 3 − 4ν0) and n = N/R with the ratio r of the shear moduli,
@@ -131,10 +124,39 @@ class _Contrast(NamedTuple):
     four_m: FloatArray  # 4m: 4MR
 
 
-def _contrast(skin: LayeredSkin) -> _Contrast:
-    shear, layer, square, bulk, both = _poisson(skin.poisson_ratio_layer, skin.poisson_ratio_bulk)
+def inverse_response_of(parts: Contrast, x: FloatArray) -> FloatArray:
+    """1/S at x = qd, dimensionless, complex where the contrast is; shapes broadcast."""
+    at_zero, ground, linear, product, four_m = parts
+    # beyond _DEEP the half-space is not felt, and inf times 0 has no value
+    x = np.minimum(x, _DEEP)
+    rise = np.expm1(-2.0 * x)  # −g
+    bending = four_m * (x * (1.0 + rise))
+    part = product * rise
+    numerator = at_zero - part * (2.0 + rise) + bending
+    denominator = ground + rise * (part - linear) - bending * x
+    return np.asarray(denominator / numerator)
+
+
+def contrast(
+    stiff: Any,
+    soft: Any,
+    *,
+    poisson_ratio_layer: FloatArray,
+    poisson_ratio_bulk: FloatArray,
+) -> Contrast:
+    """What Eq. 4 needs of Young's moduli (Pa, also complex) and Poisson ratios of layer and bulk; shapes broadcast."""
+    shear, layer, square, bulk, both = _poisson(poisson_ratio_layer, poisson_ratio_bulk)
+    ratio = stiff / soft * shear
+    m, wide, total = ratio - 1.0, 1.0 + bulk * ratio, both * ratio
+    return Contrast(layer * total, square, layer * (total - layer), m * (wide - layer), 4.0 * m * wide)
+
+
+def _contrast(skin: LayeredSkin) -> Contrast:
     stiff, soft = skin.young_modulus_layer, skin.young_modulus_bulk
     smallest = np.minimum(np.minimum(stiff, soft), skin.layer_thickness)
-    ratio = np.where(smallest > 0.0, stiff / soft * shear, np.nan)
-    m, wide, total = ratio - 1.0, 1.0 + bulk * ratio, both * ratio
-    return _Contrast(layer * total, square, layer * (total - layer), m * (wide - layer), 4.0 * m * wide)
+    return contrast(
+        np.where(smallest > 0.0, stiff, np.nan),
+        np.asarray(soft),
+        poisson_ratio_layer=np.asarray(skin.poisson_ratio_layer),
+        poisson_ratio_bulk=np.asarray(skin.poisson_ratio_bulk),
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,6 +11,9 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.roughness._fields import Floats, remembering_numbers, with_axes
 
+_UNITS = {"thickness": "m", "times": "s"}
+"""Of a field, by the last word of its name; the others are moduli."""
+
 
 class ElasticSolid(Protocol):
     """A half-space that roughness and countersurfaces press into, isotropic in the plane of its surface.
@@ -18,9 +21,7 @@ class ElasticSolid(Protocol):
     Solids are frozen dataclasses of numbers in SI that broadcast, such as `LayeredSkin` and `HomogeneousSolid`; all of contact,
     wetting and lubrication takes any of them. Impossible values give nan, see `validate_solid` for a message instead.
 
-    A viscoelastic solid is the next one: sliding at v stirs the wavevector q at frequencies up to qv, so that the moduli and the
-    response get the speed as a keyword argument, ``inverse_response(wavevector, axes, speed=v)``, complex where the solid
-    dissipates. Elastic solids answer the same for all speeds. Friction then is no function of ηv alone.
+    Viscoelastic skin becomes one at the frequency of a contact, see `ViscoelasticSkin.at_frequency`.
 
     References
     ----------
@@ -46,7 +47,7 @@ class ElasticSolid(Protocol):
         """φ = 1/(q E_eff), m/Pa, and ``−dφ/dln q``, batch shape plus the axis of ``wavevector`` (1/m)."""
 
 
-def validate_solid(solid: ElasticSolid) -> None:
+def validate_solid(solid: Any) -> None:
     """Refuse a solid that cannot exist.
 
     Evaluation itself never raises: impossible members of a batch give nan. Call this where a person typed the
@@ -59,8 +60,8 @@ def validate_solid(solid: ElasticSolid) -> None:
     Raises
     ------
     InputError
-        if a modulus (Pa) or a thickness (m) is not a finite positive number or a Poisson ratio not in (−1,
-        0.5]
+        if a modulus (Pa), a thickness (m) or a time (s) is not a finite positive number, a Poisson ratio not in (−1,
+        0.5], or relaxation times do not rise
 
     References
     ----------
@@ -74,14 +75,21 @@ def validate_solid(solid: ElasticSolid) -> None:
         ...
     skinbayes.errors.InputError: young_modulus is -20000 Pa, but must be a finite number > 0 Pa.
     """
-    parts: Any = solid
-    for name in (entry.name for entry in fields(parts)):
-        ratio, unit = name.startswith("poisson_ratio"), "m" if name.endswith("thickness") else "Pa"
+    for name in (entry.name for entry in fields(solid)):
+        if is_dataclass(part := getattr(solid, name)):
+            try:
+                validate_solid(part)
+            except InputError as error:
+                raise InputError(f"{name}: {error}") from None
+            continue
+        ratio, unit = name.startswith("poisson_ratio"), _UNITS.get(name.rpartition("_")[2], "Pa")
         for value in np.ravel(getattr(solid, name)).tolist():
             if ratio and not -1 < value <= 0.5:
                 raise InputError(f"{name} is {value:g}, but must be larger than -1 and at most 0.5.")
             if not ratio and not (np.isfinite(value) and value > 0):
                 raise InputError(f"{name} is {value:g} {unit}, but must be a finite number > 0 {unit}.")
+        if name == "relaxation_times" and not np.all(np.diff(getattr(solid, name)) > 0):
+            raise InputError(f"{name} is {getattr(solid, name)} s, but must rise from one to the next.")
 
 
 def reduced_modulus(young_modulus: ArrayLike, poisson_ratio: ArrayLike) -> FloatArray:

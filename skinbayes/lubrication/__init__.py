@@ -42,6 +42,12 @@ from skinbayes.lubrication.stribeck import (
     StribeckCurve,
     stribeck_curve,
 )
+from skinbayes.lubrication.viscoelastic_film import ViscoelasticFilms, viscoelastic_films
+from skinbayes.lubrication.viscoelastic_stribeck import (
+    SPHERE_OVER_CYLINDER,
+    ViscoelasticStribeckCurve,
+    viscoelastic_stribeck_curve,
+)
 
 __all__ = [
     "FILM_PARAMETERS",
@@ -51,6 +57,7 @@ __all__ = [
     "NODES",
     "NOTABLE_STRAIN",
     "REASONS_FOR_NO_PREDICTION",
+    "SPHERE_OVER_CYLINDER",
     "THICKEST_FILM",
     "AsperityLaw",
     "AsperityTable",
@@ -72,6 +79,8 @@ __all__ = [
     "TabulatedFlowFactors",
     "TabulatedFriction",
     "TrivialFlowFactors",
+    "ViscoelasticFilms",
+    "ViscoelasticStribeckCurve",
     "asperity_law",
     "asperity_table",
     "build_film_table",
@@ -86,4 +95,6 @@ __all__ = [
     "tabulated_friction",
     "tabulated_friction_of_liquids",
     "thinned_viscosity",
+    "viscoelastic_films",
+    "viscoelastic_stribeck_curve",
 ]

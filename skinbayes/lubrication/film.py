@@ -66,7 +66,6 @@ class LubricatedFilms(NamedTuple):
     load_weight: FloatArray
 
 
-@np.errstate(all="ignore")
 def lubricated_films(
     speed_viscosity_product: ArrayLike,
     *,
@@ -125,7 +124,32 @@ def lubricated_films(
     >>> print(f"{films.central_film[0]:.2e} m, {films.couette[0]:.3f}")
     1.94e-04 m, 0.138
     """
-    product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
+    return films_of(
+        np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64)),
+        load_per_length=load_per_length,
+        cylinder_radius=cylinder_radius,
+        reduced_modulus=reduced_modulus,
+        asperities=asperities,
+        flow_factors=flow_factors,
+        rheology=rheology,
+        nodes=nodes,
+    )
+
+
+@np.errstate(all="ignore")
+def films_of(
+    product: FloatArray,
+    *,
+    load_per_length: float,
+    cylinder_radius: float,
+    reduced_modulus: float,
+    asperities: AsperityLaw | None,
+    flow_factors: FlowFactors | None,
+    rheology: Rheology | None,
+    nodes: int,
+    respond: Callable[[LineGrid], LineGrid] | None = None,
+) -> LubricatedFilms:
+    """`lubricated_films`, on another solid if ``respond`` puts its kernel, and nodes where it needs them, into a grid."""
     if nodes < 4:
         raise InputError(f"nodes is {nodes}, but must be at least 4.")
     hertz = line_contact(load_per_length, cylinder_radius, reduced_modulus=reduced_modulus)
@@ -140,6 +164,8 @@ def lubricated_films(
     rough, tail = (0.0, 0.0) if asperities is None else _roughness(law)
     number = np.maximum(np.where(known, wanted, wanted[known].min()), _WEAKEST * rough**2)
     grid = grid_for(float(number.min()), float(number.max()), rough, tail, nodes)
+    if respond is not None:
+        grid = respond(grid)
     transport = _transport(
         flow_factors, rheology, height, lubrication_number_per_product(cylinder_radius, hertz)
     )

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.contact.moving_kernel import hat_integrals
 
 _EDGES = np.array([-1.0, 1.0])  # of the Hertz contact, where films and pressures change fastest
 _TURNS = np.linspace(-16.0, 16.0, 641)
@@ -101,9 +102,4 @@ def log_kernel(position: FloatArray) -> FloatArray:
     # integrals of ln|t| over t, once and twice
     once = offset * (logarithm - 1)
     twice = np.square(offset) * (logarithm / 2 - 0.75)
-    slope = np.diff(twice, axis=1) / np.diff(position)
-    kernel = np.empty_like(twice)
-    kernel[:, 1:-1] = np.diff(slope, axis=1)
-    kernel[:, 0] = once[:, 0] + slope[:, 0]
-    kernel[:, -1] = -once[:, -1] - slope[:, -1]
-    return kernel / np.pi
+    return hat_integrals(position, once, twice) / np.pi
