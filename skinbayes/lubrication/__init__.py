@@ -32,6 +32,7 @@ from skinbayes.lubrication.gap_flow import (
     gap_flow_factors,
     tabulated_flow_factors,
 )
+from skinbayes.lubrication.point_film import CELLS, LubricatedPointFilms, lubricated_point_films
 from skinbayes.lubrication.rheology import FlowCurve, Rheology, ShearThinning, thinned_viscosity
 from skinbayes.lubrication.stribeck import (
     LARGE_STRAIN,
@@ -44,6 +45,7 @@ from skinbayes.lubrication.stribeck import (
 )
 
 __all__ = [
+    "CELLS",
     "FILM_PARAMETERS",
     "HOMOGENEOUS_PARAMETERS",
     "LARGEST_STRAIN",
@@ -65,6 +67,7 @@ __all__ = [
     "LiquidRows",
     "LubricatedBalls",
     "LubricatedFilms",
+    "LubricatedPointFilms",
     "PatirCheng",
     "Rheology",
     "ShearThinning",
@@ -80,6 +83,7 @@ __all__ = [
     "law_of_table",
     "liquid_rows",
     "lubricated_films",
+    "lubricated_point_films",
     "stribeck_curve",
     "stribeck_curve_of_liquid",
     "tabulated_flow_factors",
