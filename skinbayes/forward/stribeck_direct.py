@@ -16,6 +16,7 @@ from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
+    POINT,
     THICKEST_FILM,
     StribeckCurve,
     stribeck_curve,
@@ -61,12 +62,12 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
     return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
 
 
-def curve_of(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCurve:
+def curve_of(inputs: Inputs, products: FloatArray, tables: Tables, contact: str = POINT) -> StribeckCurve:
     """The curve of Newtonian liquids for inputs that broadcast to ``(B,)`` at products ηv of shape ``(K,)``."""
-    return stribeck_curve(products, **_ball(inputs, tables))
+    return stribeck_curve(products, **_ball(inputs, tables, contact))
 
 
-def _ball(inputs: Inputs, tables: Tables) -> dict[str, Any]:
+def _ball(inputs: Inputs, tables: Tables, contact: str) -> dict[str, Any]:
     """What both film solvers take beside liquid and speed."""
     names = (
         "normal_force",
@@ -76,6 +77,7 @@ def _ball(inputs: Inputs, tables: Tables) -> dict[str, Any]:
         "velocity_shift_factor",
     )
     return {name: inputs[name] for name in names} | {
+        "contact": contact,
         "skin": skin_of(inputs),
         "spectrum": spectrum_of(inputs, tables),
         "thickest_film": limit_of(inputs, "inlet_film_limit"),
@@ -88,7 +90,9 @@ def limit_of(inputs: Inputs, name: str) -> float:
     return float(np.ravel(inputs[name])[0])
 
 
-def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, FloatArray]:
+def solve(
+    inputs: Inputs, tables: Tables, names: tuple[str, ...], contact: str = POINT
+) -> dict[str, FloatArray]:
     """Observables, flags and reasons of the film solver by name, each ``(B, N)``.
 
     Parameters
@@ -96,6 +100,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
     inputs : inputs of the forward model, others are left aside
     tables : with flow curves if viscosities are to follow from the film
     names : inputs of the forward model
+    contact : "point" or "line"
 
     Returns
     -------
@@ -108,7 +113,9 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
         known.pop(name, None)
     if tables.flow_curves is None:
         known["speed_viscosity_product"] = speed_viscosity_product_of(inputs)
-        found = along_rows(known, "speed_viscosity_product", partial(_newtonian, tables=tables))
+        found = along_rows(
+            known, "speed_viscosity_product", partial(_newtonian, tables=tables, contact=contact)
+        )
     else:
         known.pop("speed_viscosity_product", None)
         curves = list({id(curve): curve for curve in tables.flow_curves}.values())
@@ -116,7 +123,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
         known[_CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
         known["sliding_speed"] = inputs["sliding_speed"]
         distinct = Tables(tables.spectrum, tuple(curves))
-        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct))
+        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct, contact=contact))
     found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
     return found
 
@@ -132,24 +139,26 @@ def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
         return {"film_near_inlet": fraction > NOTABLE_FILM, "film_beyond_inlet": fraction > THICKEST_FILM}
 
 
-def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:
+def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables, contact: str) -> dict[str, FloatArray]:
     if len(products) == 1:
-        return _everything(curve_of(inputs, products[0], tables), inputs)
+        return _everything(curve_of(inputs, products[0], tables, contact), inputs)
     # a load that differs by vector, or a covariate: each vector has its own abscissae
     rows = [
-        _everything(curve_of(one, products[b], tables), one)
+        _everything(curve_of(one, products[b], tables, contact), one)
         for b, one in enumerate(_one_by_one(inputs, len(products)))
     ]
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
 
 
-def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str, FloatArray]:
+def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables, contact: str) -> dict[str, FloatArray]:
     assert tables.flow_curves is not None
     batch = max(len(speeds), *(np.shape(value)[0] for value in inputs.values()))
     rows = []
     for b, one in enumerate(_one_by_one(inputs, batch)):
         liquid = tables.flow_curves[int(one[_CURVE])]
-        curve, _ = stribeck_curve_of_liquid(speeds[b if len(speeds) > 1 else 0], liquid, **_ball(one, tables))
+        curve, _ = stribeck_curve_of_liquid(
+            speeds[b if len(speeds) > 1 else 0], liquid, **_ball(one, tables, contact)
+        )
         rows.append(_everything(curve, one))
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
 

@@ -24,6 +24,7 @@ from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
+    POINT,
     FilmTable,
     FilmTablePlan,
     FlowCurve,
@@ -115,7 +116,12 @@ def _liquids(flow_curves: tuple[FlowCurve, ...]) -> LiquidRows:
 
 
 def prepare(
-    model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
+    model: ForwardModel,
+    ranges: Ranges,
+    tables: Tables,
+    progress: Progress | None,
+    cores: int,
+    contact: str = POINT,
 ) -> ForwardModel:
     """The forward model with a table of films for the ranges, from disk if it was built before.
 
@@ -142,7 +148,9 @@ def prepare(
         name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
     }
-    plan = FilmTablePlan(held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
+    plan = FilmTablePlan(
+        held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), contact=contact, **numbers
+    )
 
     table = kept_table(
         "stribeck",

@@ -7,6 +7,7 @@ from skinbayes.lubrication.asperities import (
     asperity_table,
     law_of_table,
 )
+from skinbayes.lubrication.contact_films import CONTACTS, LINE, POINT
 from skinbayes.lubrication.effective_viscosity import EffectiveViscosity, stribeck_curve_of_liquid
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS, FilmAxes, film_axes
@@ -46,12 +47,15 @@ from skinbayes.lubrication.stribeck import (
 
 __all__ = [
     "CELLS",
+    "CONTACTS",
     "FILM_PARAMETERS",
     "HOMOGENEOUS_PARAMETERS",
     "LARGEST_STRAIN",
     "LARGE_STRAIN",
+    "LINE",
     "NODES",
     "NOTABLE_STRAIN",
+    "POINT",
     "REASONS_FOR_NO_PREDICTION",
     "THICKEST_FILM",
     "AsperityLaw",

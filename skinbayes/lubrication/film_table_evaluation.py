@@ -272,6 +272,8 @@ def _friction(
     boundary = shear_stress * np.exp(logs[BOUNDARY] - log_stiffness) + missing
     couette = np.exp(logs[COUETTE] + (log_number + scales.strain)) * (1 / (3 * np.pi)) + missing
     pressure = np.exp(logs[PRESSURE_FLOW] + scales.strain) * (1 / np.pi) + missing
+    if films.end is not None:  # it is the whole drag of the liquid
+        pressure = pressure - couette
     nothing = np.broadcast_to(np.nan, good.shape)
     return TabulatedFriction(
         boundary + couette + pressure,

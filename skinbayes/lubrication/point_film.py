@@ -7,6 +7,7 @@ equation with the mean speed v/2 of the two surfaces becomes ``div(φ_p H³ ∇P
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.film import roughness_of
 from skinbayes.lubrication.flow_factors import FlowFactors
-from skinbayes.lubrication.newton import Law
+from skinbayes.lubrication.newton import Law, Transport
 from skinbayes.lubrication.point_drag import point_drag_integrals
 from skinbayes.lubrication.point_grid import PointGrid, point_grid
 from skinbayes.lubrication.point_newton import LOAD, PointSolver
@@ -148,14 +149,9 @@ def lubricated_point_films(
     count = _rings(cells) * _rays(cells)
     films = _nothing(product.size, count)._replace(lubrication_number=wanted)
     fainter = wanted / number  # 1 but for the weakest flows, of which everything is linear in λ
-    for rows in _by_reach(number, known):
-        grid = grid_of(number[rows], rough, tail, end=end, cells=cells)
-        solver = PointSolver(grid, law, float(number[rows].min()))
-        states, _ = sweep(number[rows], solver, transport, (rough, *(rough + more for more in _APPROACHES)))
-        pressure = np.array([np.full(count, np.nan) if state is None else state.pressure for state in states])
-        film = np.array(
-            [np.full(count, np.nan) if state is None else solver.separation(state) for state in states]
-        )
+    for rows, grid, film, pressure in point_sweeps(
+        number, known, law, transport, rough=rough, tail=tail, end=end, cells=cells
+    ):
         carried = law(film)[0] + 0.0 * film
         fluid = pressure - carried
         drag = point_drag_integrals(
@@ -181,6 +177,31 @@ def _nothing(rows: int, cells: int) -> LubricatedPointFilms:
     """Films of which nothing is known."""
     resolved = [np.full((rows, cells), np.nan) for _ in range(6)]
     return LubricatedPointFilms(*resolved, *(np.full(rows, np.nan) for _ in range(6)))
+
+
+def point_sweeps(
+    number: FloatArray,
+    known: BoolArray,
+    law: Law,
+    transport: Callable[[float], Transport],
+    *,
+    rough: float,
+    tail: float,
+    end: float,
+    cells: int,
+) -> Iterator[tuple[IndexArray, PointGrid, FloatArray, FloatArray]]:
+    """Rows of lubrication numbers that share a grid, the grid, and their H and P, dimensionless, shape ``(K, n)``."""
+    for rows in _by_reach(number, known):
+        grid = grid_of(number[rows], rough, tail, end=end, cells=cells)
+        solver = PointSolver(grid, law, float(number[rows].min()))
+        states, _ = sweep(number[rows], solver, transport, (rough, *(rough + more for more in _APPROACHES)))
+        missing = np.full(grid.radius.size, np.nan)
+        yield (
+            rows,
+            grid,
+            np.array([missing if state is None else solver.separation(state) for state in states]),
+            np.array([missing if state is None else state.pressure for state in states]),
+        )
 
 
 def point_number_per_product(contact_radius: float, maximum_pressure: float, sphere_radius: float) -> float:
@@ -209,7 +230,7 @@ def grid_of(number: FloatArray, rough: float, tail: float, *, end: float, cells:
     smallest, largest = float(number.min()), float(number.max())
     reach = max(_SHORTEST_REACH, 1.1 * end, 3 + 6 * np.sqrt(tail), 12 * largest)
     thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
-    edge = float(np.clip(2.4 * thinnest ** (2 / 3), 0.05, 0.3))
+    edge = float(np.clip(2.4 * thinnest ** (2 / 3), 0.05, 0.15))
     if smallest > _WIDE:
         edge = max(edge, _PART_OF_WIDTH * smallest)
     return point_grid(_rings(cells), _rays(cells), edge, float(reach))
