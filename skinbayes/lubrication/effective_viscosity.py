@@ -109,7 +109,7 @@ def stribeck_curve_of_liquid(
     >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, normal_force=0.2, sphere_radius=8e-3,
     ...     spectrum=surface, skin=wet, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3), viscosity.viscosity.round(1))
-    [0.108 0.325] [25.  24.6]
+    [0.127 0.314] [25.  24.5]
     """
     speed = np.atleast_1d(np.asarray(sliding_speed, dtype=np.float64))
     wrong = np.flatnonzero(~(np.isfinite(speed) & (speed >= 0)))

@@ -157,10 +157,9 @@ def _corrected_at(counts: tuple[int, ...]) -> tuple[int, ...]:
 
 def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
     """ln of the smallest and largest end of the drag in a table, over the radius of the contact."""
-    corners = np.array(list(product((-1.0, 1.0), repeat=len(plan.axes.names)))).reshape(
-        -1, len(plan.axes.names)
-    )
-    ends = log_end(film_scales(list(plan.axes.representative(corners).T), plan.poisson_ratio_bulk).strain)
+    corners = list(product((-1.0, 1.0), repeat=len(plan.axes.names)))
+    places = plan.axes.representative(np.array(corners).reshape(len(corners), len(plan.axes.names)))
+    ends = log_end(film_scales(list(places.T), plan.poisson_ratio_bulk).strain)
     return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
 
 

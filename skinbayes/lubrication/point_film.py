@@ -128,7 +128,7 @@ def lubricated_point_films(
     --------
     >>> films = lubricated_point_films([0.1], normal_force=0.2, sphere_radius=8e-3, reduced_modulus=20e3 / 0.75)
     >>> print(f"{films.central_film[0]:.2e} m, {films.couette[0]:.3f}")
-    1.65e-04 m, 0.180
+    1.66e-04 m, 0.179
     """
     product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
     if cells < 40:

@@ -4,6 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from line_curves import stribeck_curve
 from named_fields import surface_from
 from scipy.interpolate import CubicSpline
 from scipy.special import ellipe, ellipk
@@ -23,7 +24,6 @@ from skinbayes.lubrication import (
     asperity_law,
     lubricated_films,
     lubricated_point_films,
-    stribeck_curve,
 )
 from skinbayes.lubrication.newton import FilmState
 from skinbayes.lubrication.point_drag import point_drag_integrals
