@@ -32,7 +32,7 @@ def contact_films(
 ) -> tuple[LubricatedFilms | LubricatedPointFilms, float]:
     """Films under a ball, and the load over which its friction is counted: F_N, N, or f_N, N/m, of the cylinder.
 
-    The arguments are those of `lubricated_point_films`; ``nodes`` are those of a line contact, ``cells`` those of a point contact.
+    The arguments are those of `lubricated_point_films`; ``nodes`` are those of a line contact, ``cells`` those of a ball.
     """
     if contact == POINT:
         return lubricated_point_films(

@@ -50,8 +50,8 @@ class ContractedFilms:
     anchor, unit : ln λ that speeds are counted from and their unit, dimensionless, shape ``(B, 1)`` or ``(B, N)``
     speeds : number of speeds, dimensionless
     smooth : films of the smooth ball
-    end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line contact
-        and for points, of which no drag is asked
+    end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line
+        contact and for points, of which no drag is asked
     scales : of the contact, shape ``(B, 1)`` or ``(B, N)`` each
     inside : where the table holds the parameters
     """

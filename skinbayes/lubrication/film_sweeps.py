@@ -60,7 +60,7 @@ class Ball:
     def outputs(
         self, log_number: FloatArray, nodes: int, *, contact: str = LINE, cells: int = CELLS
     ) -> FloatArray:
-        """ln of the outputs at ln λ of shape ``(K,)``, shape ``(6, K)``; those of a point contact in the units of the cylinder, too.
+        """ln of the outputs at ln λ of shape ``(K,)``, shape ``(6, K)``; those of a ball in the units of its cylinder.
 
         Raises
         ------

@@ -14,8 +14,8 @@ from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
 from skinbayes.contact.solid import ElasticSolid
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.lubrication.asperities import AsperityTable, asperity_table, is_lawful, law_of_table
-from skinbayes.lubrication.film import NODES, LubricatedFilms
 from skinbayes.lubrication.contact_films import POINT, contact_films, weighted
+from skinbayes.lubrication.film import NODES, LubricatedFilms
 from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.point_film import CELLS, LubricatedPointFilms
 from skinbayes.lubrication.rheology import Rheology
@@ -160,7 +160,7 @@ def stribeck_curve(
     Notes
     -----
     The shear stress under a ball is counted up to its edge, see `lubricated_point_films`, that under a cylinder in the whole inlet.
-    Against the ball the cylinder carries the same load at 0.8 of the speed, and its friction is 7 to 32 % smaller at the minimum.
+    The cylinder carries the same load at 0.8 of the speed, and its friction is 7 to 32 % smaller at the minimum.
     Which terms are summed matters: the minimum of Fig. 13 is 0.108 (line) with all three and 0.086 without the pressure flow.
 
     References
