@@ -166,7 +166,8 @@ def prepare(
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
         abscissa=tabulated.abscissa,
-        accuracy=f"Friction is read from a table of films of a {contact} contact; at {table.held_out_count} places that it was not "
-        f"made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and {worst:.2g} % at "
-        "worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as impossible.",
+        accuracy=f"Friction is read from a table of films of a {contact} contact; at {table.held_out_count} places that it was "
+        f"not made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and "
+        f"{worst:.2g} % at worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as "
+        "impossible.",
     )

@@ -289,7 +289,8 @@ def film_axes(
         most = 3 * (np.log(largest_strain) + cylinder + high[3] - half_width)
         end[strains[0]] = min(end[strains[0]], max(most, start[strains[0]] + 1e-3))
     half = (end - start) / 2
-    excluded = _complement(influence) @ invariants
+    everything = np.vstack([invariants, np.eye(6)[_RADIUS]]) if radius_matters else invariants
+    excluded = _complement(everything[:, varying]) @ everything
     if homogeneous:
         excluded = np.vstack([excluded, _INVARIANTS[0]])  # E1/E0 is 1
     wanted = dict(counts or {})

@@ -204,6 +204,8 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     end = None
     if table.contact == POINT:
         end = end_coordinate(log_end(scales.strain), table.end_low, table.end_high)
+        inside = inside & (np.abs(end) <= 1)
+        end = np.where(np.abs(end) <= 1, end, 0.0)
     return ContractedFilms(
         flat,
         start,

@@ -41,7 +41,7 @@ def log_number_ratio() -> float:
 
 
 def smooth_point_films(low: float, high: float) -> SmoothFilms:
-    """Films under a smooth ball in the units of its cylinder; ln of the end of the drag, in radii, is from ``low`` to ``high``."""
+    """Films under a smooth ball in the units of its cylinder; ln of the end of the drag is from ``low`` to ``high``."""
     log_number = LOWEST + STEP * np.arange(_SKIPPED, round((HIGHEST - LOWEST) / STEP) + 1)
     number = np.exp(log_number + log_number_ratio())
     hertz = sphere_contact(1.0, 1.0, reduced_modulus=1.0)

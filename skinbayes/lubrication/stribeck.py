@@ -159,7 +159,7 @@ def stribeck_curve(
 
     Notes
     -----
-    The shear stress under a ball is counted up to its edge, see `lubricated_point_films`, that under a cylinder in the whole inlet.
+    The shear stress under a ball is counted up to its edge, see `lubricated_point_films`, that under a cylinder everywhere.
     The cylinder carries the same load at 0.8 of the speed, and its friction is 7 to 32 % smaller at the minimum.
     Which terms are summed matters: the minimum of Fig. 13 is 0.108 (line) with all three and 0.086 without the pressure flow.
 
