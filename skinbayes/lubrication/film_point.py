@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.hertz import sphere_contact
@@ -15,11 +16,12 @@ from skinbayes.lubrication.point_drag import point_drag_integrals
 from skinbayes.lubrication.point_film import point_sweeps
 from skinbayes.lubrication.transport import no_asperities, transport_of
 
-TERMS = 5
+TERMS = 6
 """Polynomials of the end of the drag."""
 
 _SKIPPED = 12  # of the slowest speeds of a smooth cylinder: thinner than cells resolve; each output is a power of λ there
 _CELLS = 500
+_STEPS = 8  # of Newton's iteration for a speed
 _LEAST_ODDS = 1e-12  # of the load that the liquid carries
 
 
@@ -93,24 +95,61 @@ def whole_drag(outputs: FloatArray, log_number: FloatArray) -> FloatArray:
     return found
 
 
-def correction(point: FloatArray, line: FloatArray) -> FloatArray:
-    """What a ball has beyond its cylinder, shape ``(M, 6, S)``, of relative outputs of both; smooth in everything.
+def correction(point: FloatArray, line: FloatArray, speeds: FloatArray, places: FloatArray) -> FloatArray:
+    """What a ball has beyond its cylinder, shape ``(M, 6, K)``; smooth in everything.
 
-    The load fraction is compared by its odds, and the boundary term by its ratio to the load fraction, which is the same
-    wherever A ∝ p.
+    Asperities carry under the ball what they carry under its cylinder at a lower speed: the load fraction is compared by the speed,
+    because it falls by many powers of ten, and the boundary term by its ratio to the load fraction at the speeds that belong
+    together, which is the same wherever A ∝ p.
+
+    Parameters
+    ----------
+    point : relative outputs of M balls, shape ``(M, 6, K)``
+    line : those of their cylinders, at all speeds of a table, shape ``(M, 6, S)``
+    speeds : K speeds, in the unit of the material, dimensionless
+    places : S speeds, likewise, rising
     """
-    found = point - line
-    found[:, BOUNDARY] -= found[:, FRACTION]
-    found[:, FRACTION] = log_odds(point[:, FRACTION]) - log_odds(line[:, FRACTION])
+    found = point - line[:, :, np.searchsorted(places, speeds - 1e-9)]
+    for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
+        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))
+        lower = odds.place_of(log_odds(of_ball[FRACTION]))
+        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])
+        found[row, FRACTION] = speeds - lower
+        found[row, BOUNDARY] = of_ball[BOUNDARY] - of_ball[FRACTION] - ratio(lower)
     return found
 
 
-def corrected(line: FloatArray, addition: FloatArray) -> FloatArray:
-    """Relative outputs of balls, shape ``(M, 6, S)``, from those of their cylinders and the `correction`."""
+def corrected(line: FloatArray, addition: FloatArray, places: FloatArray) -> FloatArray:
+    """Relative outputs of balls, shape ``(M, 6, S)``, from those of their cylinders and the `correction` at the S speeds."""
     found = line + addition
-    found[:, FRACTION] = -np.logaddexp(0.0, -(log_odds(line[:, FRACTION]) + addition[:, FRACTION]))
-    found[:, BOUNDARY] += found[:, FRACTION] - line[:, FRACTION]
+    for row, of_cylinder in enumerate(line):
+        lower = places - addition[row, FRACTION]
+        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))(lower)
+        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])(lower)
+        found[row, FRACTION] = -np.logaddexp(0.0, -odds)
+        found[row, BOUNDARY] = found[row, FRACTION] + ratio + addition[row, BOUNDARY]
     return found
+
+
+class _Continued:
+    """A cubic spline through values at places, and straight on at both ends."""
+
+    def __init__(self, places: FloatArray, values: FloatArray) -> None:
+        self._spline = CubicSpline(places, values)
+        self._slope = self._spline.derivative()
+        self._ends, self._points = places[[0, -1]], (places, values)
+
+    def __call__(self, place: FloatArray) -> FloatArray:
+        held = np.clip(place, *self._ends)
+        return np.asarray(self._spline(held) + self._slope(held) * (place - held))
+
+    def place_of(self, values: FloatArray) -> FloatArray:
+        """Where a falling function has given values: Newton steps from straight lines between the points."""
+        places, points = self._points
+        place = np.interp(-values, -points, places)
+        for _ in range(_STEPS):
+            place = place - (self(place) - values) / self._slope(np.clip(place, *self._ends))
+        return place
 
 
 def log_odds(log_fraction: FloatArray) -> FloatArray:

@@ -37,7 +37,7 @@ _ANCHOR_COUNT = (
     5  # nodes of an axis, at most, at which the anchors are found; between them they are polynomials
 )
 _CHECK_NODES, _CHECK_CELLS = 128, 600
-_FEW_SPEEDS = 16  # at which the ball is solved
+_EVERY = 2  # of the speeds at which the cylinder is solved, the ball is, too
 _CORRECTED = 0.5  # nodes at which the ball is solved, over those at which its cylinder is
 _SPARE = 1e-3  # of ln, beyond the ends of the drag
 
@@ -112,12 +112,12 @@ def build_film_table(
         else:
             outputs = relative_outputs(whole_drag(outputs, numbers), numbers, _with_whole_drag(smooth))
             ends = _ends_of(plan)
-            few = np.linspace(SLOWEST, FASTEST, _FEW_SPEEDS)
-            addition, smooth = _correction(plan, solve, point_places, anchor_terms, few, ends)
+            few = grid[::_EVERY]
+            addition, smooth = _correction(plan, solve, point_places, anchor_terms, grid, ends)
             addition = CubicSpline(few, addition, axis=-1)(grid)
             terms = grid_coefficients(addition.reshape(*_corrected_at(axes.counts), -1), ends=False)
             there = summed(terms, list(places.T[:, :, None]), len(places))[:, 0]
-            outputs = corrected(outputs, there.reshape(outputs.shape))
+            outputs = corrected(outputs, there.reshape(outputs.shape), grid)
         splines = spline_coefficients(outputs)
         # at the last speeds the ball is smooth to 1e-4: exactly so from there on
         splines[:, (0, 2, 3, 4), -3:] = 0.0
@@ -157,9 +157,15 @@ def _corrected_at(counts: tuple[int, ...]) -> tuple[int, ...]:
 
 def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
     """ln of the smallest and largest end of the drag in a table, over the radius of the contact."""
-    corners = list(product((-1.0, 1.0), repeat=len(plan.axes.names)))
-    places = plan.axes.representative(np.array(corners).reshape(len(corners), len(plan.axes.names)))
-    ends = log_end(film_scales(list(places.T), plan.poisson_ratio_bulk).strain)
+    axes = plan.axes
+    # a/R goes as (F R/E1)^(1/3)/R, and the ends of F R/E1 and of R may meet
+    products = axes.low[3] + axes.low[4] - axes.high[1], axes.high[3] + axes.high[4] - axes.low[1]
+    radii = axes.high[3], axes.low[3]
+    places = [
+        [0.0, 0.0, 0.0, radius, product - radius, 0.0]
+        for radius, product in zip(radii, products, strict=True)
+    ]
+    ends = log_end(film_scales(list(np.array(places).T), plan.poisson_ratio_bulk).strain)
     return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
 
 
@@ -179,20 +185,21 @@ def _correction(
     grid: FloatArray,
     ends: tuple[float, float],
 ) -> tuple[FloatArray, SmoothFilms]:
-    """What balls at M places have beyond their cylinders, shape ``(M, 6, S)``, and the films of the smooth ball."""
+    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, and the smooth films."""
     at_nodes = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
     numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
+    few = numbers[:, ::_EVERY]
     parameters = plan.axes.representative(places)
     found = {}
-    for contact in (LINE, POINT):
+    for contact, at in ((LINE, numbers), (POINT, few)):
         balls = (plan.ball(one) for one in parameters)
         outputs = partial(_outputs, nodes=plan.nodes, contact=contact, cells=plan.cells)
-        found[contact] = solve(f"{contact} for the correction", outputs, zip(balls, numbers, strict=True))
+        found[contact] = solve(f"{contact} for the correction", outputs, zip(balls, at, strict=True))
     smooth = smooth_point_films(*ends)
     end = end_coordinate(log_end(film_scales(list(parameters.T), plan.poisson_ratio_bulk).strain), *ends)
-    point = relative_outputs(found[POINT], numbers, smooth, end)
+    point = relative_outputs(found[POINT], few, smooth, end)
     line = relative_outputs(whole_drag(found[LINE], numbers), numbers, _with_whole_drag(smooth_films()))
-    return correction(point, line), smooth
+    return correction(point, line, grid[::_EVERY], grid), smooth
 
 
 def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
