@@ -1,19 +1,19 @@
 """Stribeck curve of 30 points: skinbayes against scipy.optimize.root on the same equations.
 
-Run with ``python benchmarks/stribeck.py [--json] [--plain-nodes N] [--contact line]``. The plain side takes evenly spaced nodes, central
-differences and constant pressures about the nodes, writes "either fluid pressure or mass loss is zero" as Fischer and
-Burmeister do, and leaves the rest to scipy.optimize.root (Levenberg–Marquardt, Jacobian by differences; hybr does not converge
-here), speed after speed, each started from the one before. Both sides use the same table of asperity pressures, and the
-time to make it counts for both. Errors are the largest of the friction coefficient over the curve, against skinbayes on ten
-times as many nodes; the points at which the plain side found no film are left out of its error and counted. At its default
-of 120 nodes it is several times less accurate than skinbayes on 64: the ratio of times at the same error is larger than
-what is printed.
+Run with ``python benchmarks/stribeck.py [--json] [--plain-nodes N] [--contact line]``. The plain side takes evenly spaced
+nodes, central differences and constant pressures about the nodes, writes "either fluid pressure or mass loss is zero" as
+Fischer and Burmeister do, and leaves the rest to scipy.optimize.root (Levenberg–Marquardt, Jacobian by differences; hybr does
+not converge here), speed after speed, each started from the one before. Both sides use the same table of asperity pressures,
+and the time to make it counts for both. Errors are the largest of the friction coefficient over the curve, against skinbayes on
+ten times as many nodes; the points at which the plain side found no film are left out of its error and counted. At its default
+of 120 nodes it is several times less accurate than skinbayes on 64: the ratio of times at the same error is larger than what is
+printed.
 
-Then a table of films, of the ball or of its cylinder, is built for bulk modulus, roughness and force (`build_film_table`), and the same curve is taken from it
-for many parameter vectors at once: seconds a curve against those of the direct solver in the same run, and the largest
-difference between both. Last come the 165 measured points of the finger data, each with the viscosity of its liquid at the
-shear rate of its own film: from the table, a vector of parameters, and row by row from the direct solver with that viscosity
-given, which leaves the search for it aside.
+Then a table of films, of the ball or of its cylinder, is built for bulk modulus, roughness and force (`build_film_table`), and
+the same curve is taken from it for many parameter vectors at once: seconds a curve against those of the direct solver in the
+same run, and the largest difference between both. Last come the 165 measured points of the finger data, each with the viscosity
+of its liquid at the shear rate of its own film: from the table, a vector of parameters, and row by row from the direct solver
+with that viscosity given, which leaves the search for it aside.
 """
 
 from __future__ import annotations

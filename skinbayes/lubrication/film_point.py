@@ -98,9 +98,9 @@ def whole_drag(outputs: FloatArray, log_number: FloatArray) -> FloatArray:
 def correction(point: FloatArray, line: FloatArray, speeds: FloatArray, places: FloatArray) -> FloatArray:
     """What a ball has beyond its cylinder, shape ``(M, 6, K)``; smooth in everything.
 
-    Asperities carry under the ball what they carry under its cylinder at a lower speed: the load fraction is compared by the speed,
-    because it falls by many powers of ten, and the boundary term by its ratio to the load fraction at the speeds that belong
-    together, which is the same wherever A ∝ p.
+    Asperities carry under the ball what they carry under its cylinder at a lower speed. The load fraction is compared by
+    the speed, because it falls by many powers of ten, and the boundary term by its ratio to the load fraction at the speeds
+    that belong together, which is the same wherever A ∝ p.
 
     Parameters
     ----------
