@@ -13,7 +13,9 @@ from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
 from skinbayes.forward.stribeck_direct import (
+    BALL,
     FIELDS,
+    Theory,
     film_flags,
     limit_of,
     speed_viscosity_product_of,
@@ -24,7 +26,6 @@ from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
-    POINT,
     FilmTable,
     FilmTablePlan,
     FlowCurve,
@@ -121,7 +122,7 @@ def prepare(
     tables: Tables,
     progress: Progress | None,
     cores: int,
-    contact: str = POINT,
+    theory: Theory = BALL,
 ) -> ForwardModel:
     """The forward model with a table of films for the ranges, from disk if it was built before.
 
@@ -129,6 +130,11 @@ def prepare(
     itself is used, which is slow.
     """
     names = model.input_names()
+    if theory.flow_factors != "none":
+        return replace(
+            model,
+            accuracy="Each curve is solved by itself, which is slow: tables of films hold no flow factors.",
+        )
     varying = [
         name
         for name, (low, high) in ranges.items()
@@ -149,7 +155,11 @@ def prepare(
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
     }
     plan = FilmTablePlan(
-        held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), contact=contact, **numbers
+        held,
+        spectrum=spectrum,
+        largest_strain=float(fixed["strain_limit"]),
+        contact=theory.contact,
+        **numbers,
     )
 
     table = kept_table(
@@ -166,8 +176,8 @@ def prepare(
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
         abscissa=tabulated.abscissa,
-        accuracy=f"Friction is read from a table of films of a {contact} contact; at {table.held_out_count} places that it was "
-        f"not made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and "
-        f"{worst:.2g} % at worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as "
-        "impossible.",
+        accuracy=f"Friction is read from a table of films of a {theory.contact} contact; at {table.held_out_count} places that "
+        f"it was not made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th "
+        f"percentile and {worst:.2g} % at worst. Beyond the table, which holds each prior but for 0.001 % on either side, "
+        "parameters count as impossible.",
     )

@@ -41,12 +41,17 @@ def test_the_case_of_the_paper(curve):
 
 
 def test_the_ball_itself_needs_more_speed_and_has_more_friction(capsys, curve):
-    assert load_problem("stribeck").forward.chosen == {"contact": "point"}
+    assert load_problem("stribeck").forward.chosen == {"contact": "point", "flow_factors": "none"}
     command = ("predict", "stribeck", "--set", "speed_viscosity_product=0.025 N/m", "--json")
     ball = run(capsys, *command).document()["prediction"]
     cylinder = run(capsys, *command, "--set", "contact=line").document()["prediction"]
     ratio = ball["friction_coefficient"][0] / cylinder["friction_coefficient"][0]
     assert ratio == pytest.approx(1.18, abs=0.02)  # docs/equations.md, from 1440 cells
+    # more flow resistance and shear stress in rough gaps: docs/equations.md
+    for kind in ("gap", "patir-cheng"):
+        factors = run(capsys, *command, "--set", "contact=line", "--set", f"flow_factors={kind}").document()
+        more = factors["prediction"]["friction_coefficient"][0] / cylinder["friction_coefficient"][0]
+        assert 1.1 < more < 1.4
     refused = run(capsys, *command, "--set", "contact=ellipse")
     assert refused.status == 2 and "'point' or 'line'" in refused.errors
 
