@@ -91,12 +91,15 @@ def _show_model(name: str, as_json: bool) -> None:
     if as_json:
         print_json({
             "model": spec.name, "title": spec.title, "description": spec.description, "forward": spec.forward,
+            "options": dict(problem.forward.chosen),
             "dataset": spec.dataset, "rows": spec.rows, "observables": spec.observables, "noise": spec.noise,
             "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
         })  # fmt: skip
         return
     print_text(spec.title, "", *_paragraphs(spec.description), "")
     print_text(f"forward model: {spec.forward} – {problem.forward.summary}")
+    for option, value in problem.forward.chosen.items():
+        print_text(f"option:        {option} = {value} ({' or '.join(problem.forward.options[option])})")
     print_text(
         f"data set:      {spec.dataset or ('yours, with --data' if spec.observables else 'none (predict only)')}"
         + (f", rows {spec.rows}" if spec.rows else "")

@@ -129,6 +129,7 @@ def _provenance(problem: Problem, package: str | None) -> dict[str, Any]:
         "observables": list(problem.observables),
         "noise": dict(problem.spec.noise),
         "accuracy": problem.model.accuracy,
+        "options": dict(problem.forward.chosen),
         "data": data,
         "versions": _versions(package),
     }

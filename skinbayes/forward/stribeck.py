@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray
@@ -17,28 +19,33 @@ from skinbayes.forward.stribeck_direct import (
     FIELDS,
     FLAGS,
     SPEED_ALTERNATIVES,
+    Theory,
     curve_of,
+    one_by_one,
     solve,
     speed_viscosity_product_of,
 )
 from skinbayes.forward.stribeck_table import prepare
-from skinbayes.lubrication import LARGEST_STRAIN, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
+from skinbayes.lubrication import CONTACTS, LARGEST_STRAIN, POINT, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
 from skinbayes.roughness import rms_slope
 
+FLOW_FACTORS = ("none", "patir-cheng", "gap")
+"""Where the factors of the flow between rough surfaces come from; the paper has none."""
 
-def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    found = solve(inputs, tables, MODEL.input_names())
+
+def _evaluate(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, FloatArray]:
+    found = solve(inputs, tables, MODEL.input_names(), theory)
     return {name: found[name] for name in FIELDS}
 
 
-def _flags(inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
-    found = solve(inputs, tables, MODEL.input_names())
+def _flags(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, BoolArray]:
+    found = solve(inputs, tables, MODEL.input_names(), theory)
     return {name: found[name] > 0 for name in FLAGS}
 
 
-def _explain(inputs: Inputs, tables: Tables) -> list[str]:
+def _explain(inputs: Inputs, tables: Tables, theory: Theory) -> list[str]:
     """Why points of the curve are missing or doubtful."""
-    found = solve(inputs, tables, MODEL.input_names())
+    found = solve(inputs, tables, MODEL.input_names(), theory)
     said = []
     for name, reason in (REASONS_FOR_NO_PREDICTION | FLAGS).items():
         count, total = int(np.count_nonzero(found[name])), found[name].size
@@ -47,10 +54,10 @@ def _explain(inputs: Inputs, tables: Tables) -> list[str]:
     return said
 
 
-def _abscissa(inputs: Inputs, tables: Tables) -> FloatArray:
+def _abscissa(inputs: Inputs, tables: Tables, theory: Theory) -> FloatArray:
     if tables.flow_curves is None:
         return speed_viscosity_product_of(inputs)
-    return solve(inputs, tables, MODEL.input_names())["speed_viscosity_product"]
+    return solve(inputs, tables, MODEL.input_names(), theory)["speed_viscosity_product"]
 
 
 def _derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
@@ -61,50 +68,65 @@ def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
     return np.geomspace(1e-6, 1.0, 61)
 
 
-def _profile(inputs: Inputs, tables: Tables, products: FloatArray) -> FloatArray:
-    friction = np.asarray(curve_of(inputs, products, tables).friction_coefficient)
+def _profile(inputs: Inputs, tables: Tables, products: FloatArray, theory: Theory) -> FloatArray:
+    if theory.flow_factors == "none":
+        friction = np.asarray(curve_of(inputs, products, tables, theory).friction_coefficient)
+    else:  # each vector has its own
+        count = max(np.size(value) for value in inputs.values())
+        vectors = one_by_one({name: np.atleast_1d(value) for name, value in inputs.items()}, count)
+        curves = [curve_of(one, products, tables, theory) for one in vectors]
+        friction = np.array([curve.friction_coefficient for curve in curves])
     return friction + np.asarray(inputs.get("additive_friction", 0.0))[..., np.newaxis]
 
 
-MODEL = ForwardModel(
-    name="stribeck",
-    summary="friction of a ball on lubricated rough skin, its boundary, Couette and pressure-flow parts, and the films",
-    observables=tuple(FIELDS),
-    required=(
-        "frictional_shear_stress",
-        "sphere_radius",
-        "normal_force",
-        SOLID_ALTERNATIVES,
-        SPEED_ALTERNATIVES,
-    ),
-    goes_with=GOES_WITH,
-    optional={
-        **{name: value for name, value in SKIN_DEFAULTS.items() if name != "yield_stress"},
-        "velocity_shift_factor": 1.0,
-        "additive_friction": 0.0,
-        "inlet_film_limit": THICKEST_FILM,
-        "strain_limit": LARGEST_STRAIN,
-    },
-    evaluate=_evaluate,
-    validate=validate_contact,
-    explain=_explain,
-    flags=_flags,
-    flag_meanings=FLAGS,
-    prepare=prepare,
-    abscissa=_abscissa,
-    expensive=True,
-    uses_flow_curves=True,
-    derived=_derived,
-    derived_names=("rms_slope",),
-    blocks=("rms_slope",),
-    profiles=(
-        Profile(
-            name="stribeck",
-            title="Stribeck curve",
-            abscissa="speed_viscosity_product",
-            ordinate="friction_coefficient",
-            grid=_grid,
-            evaluate=_profile,
+def stribeck_model(contact: str = POINT, flow_factors: str = "none") -> ForwardModel:
+    """Return the forward model of the ball as it is, or of the cylinder that the paper takes for it."""
+    theory = Theory(contact, flow_factors)
+    return ForwardModel(
+        name="stribeck",
+        summary="friction of a ball on lubricated rough skin, its boundary, Couette and pressure-flow parts, and the films",
+        observables=tuple(FIELDS),
+        options={"contact": CONTACTS, "flow_factors": FLOW_FACTORS},
+        variant=stribeck_model,
+        chosen=theory._asdict(),
+        required=(
+            "frictional_shear_stress",
+            "sphere_radius",
+            "normal_force",
+            SOLID_ALTERNATIVES,
+            SPEED_ALTERNATIVES,
         ),
-    ),
-)
+        goes_with=GOES_WITH,
+        optional={
+            **{name: value for name, value in SKIN_DEFAULTS.items() if name != "yield_stress"},
+            "velocity_shift_factor": 1.0,
+            "additive_friction": 0.0,
+            "inlet_film_limit": THICKEST_FILM,
+            "strain_limit": LARGEST_STRAIN,
+        },
+        evaluate=partial(_evaluate, theory=theory),
+        validate=validate_contact,
+        explain=partial(_explain, theory=theory),
+        flags=partial(_flags, theory=theory),
+        flag_meanings=FLAGS,
+        prepare=partial(prepare, theory=theory),
+        abscissa=partial(_abscissa, theory=theory),
+        expensive=True,
+        uses_flow_curves=True,
+        derived=_derived,
+        derived_names=("rms_slope",),
+        blocks=("rms_slope",),
+        profiles=(
+            Profile(
+                name="stribeck",
+                title="Stribeck curve",
+                abscissa="speed_viscosity_product",
+                ordinate="friction_coefficient",
+                grid=_grid,
+                evaluate=partial(_profile, theory=theory),
+            ),
+        ),
+    )
+
+
+MODEL = stribeck_model()

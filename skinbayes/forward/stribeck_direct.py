@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,11 +16,16 @@ from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
+    POINT,
     THICKEST_FILM,
+    FlowFactors,
+    PatirCheng,
     StribeckCurve,
     stribeck_curve,
     stribeck_curve_of_liquid,
+    tabulated_flow_factors,
 )
+from skinbayes.roughness import rms_height
 
 NOTABLE_FILM = THICKEST_FILM / 5
 """3π ηv/f_N beyond which a prediction is marked: the fraction of the load beyond the edge of the ball grows to a fifth at five
@@ -61,12 +66,23 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
     return np.asarray(inputs["viscosity"] * inputs["sliding_speed"], dtype=float)
 
 
-def curve_of(inputs: Inputs, products: FloatArray, tables: Tables) -> StribeckCurve:
+class Theory(NamedTuple):
+    """What is chosen beside the inputs: the contact, "point" or "line", and where flow factors come from."""
+
+    contact: str = POINT
+    flow_factors: str = "none"
+
+
+BALL = Theory()
+"""The ball as it is, without flow factors."""
+
+
+def curve_of(inputs: Inputs, products: FloatArray, tables: Tables, theory: Theory = BALL) -> StribeckCurve:
     """The curve of Newtonian liquids for inputs that broadcast to ``(B,)`` at products ηv of shape ``(K,)``."""
-    return stribeck_curve(products, **_ball(inputs, tables))
+    return stribeck_curve(products, **_ball(inputs, tables, theory))
 
 
-def _ball(inputs: Inputs, tables: Tables) -> dict[str, Any]:
+def _ball(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, Any]:
     """What both film solvers take beside liquid and speed."""
     names = (
         "normal_force",
@@ -76,6 +92,8 @@ def _ball(inputs: Inputs, tables: Tables) -> dict[str, Any]:
         "velocity_shift_factor",
     )
     return {name: inputs[name] for name in names} | {
+        "contact": theory.contact,
+        "flow_factors": _flow_factors(inputs, tables, theory.flow_factors),
         "skin": skin_of(inputs),
         "spectrum": spectrum_of(inputs, tables),
         "thickest_film": limit_of(inputs, "inlet_film_limit"),
@@ -83,12 +101,25 @@ def _ball(inputs: Inputs, tables: Tables) -> dict[str, Any]:
     }
 
 
+def _flow_factors(inputs: Inputs, tables: Tables, kind: str) -> FlowFactors | None:
+    """Flow factors of one surface and skin, from the statistics of its gaps or the fits of Patir and Cheng."""
+    if kind == "none":
+        return None
+    spectrum = spectrum_of(inputs, tables)
+    if kind == "patir-cheng":
+        return PatirCheng(float(np.squeeze(rms_height(spectrum))))
+    correction = float(np.squeeze(inputs["area_correction"]))
+    return tabulated_flow_factors(spectrum, skin_of(inputs), area_correction=correction)
+
+
 def limit_of(inputs: Inputs, name: str) -> float:
     """Return the largest 3π ηv/f_N, or b/Rc, at which friction is predicted; the same for all rows and vectors."""
     return float(np.ravel(inputs[name])[0])
 
 
-def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, FloatArray]:
+def solve(
+    inputs: Inputs, tables: Tables, names: tuple[str, ...], theory: Theory = BALL
+) -> dict[str, FloatArray]:
     """Observables, flags and reasons of the film solver by name, each ``(B, N)``.
 
     Parameters
@@ -96,6 +127,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
     inputs : inputs of the forward model, others are left aside
     tables : with flow curves if viscosities are to follow from the film
     names : inputs of the forward model
+    theory : contact and flow factors
 
     Returns
     -------
@@ -108,7 +140,9 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
         known.pop(name, None)
     if tables.flow_curves is None:
         known["speed_viscosity_product"] = speed_viscosity_product_of(inputs)
-        found = along_rows(known, "speed_viscosity_product", partial(_newtonian, tables=tables))
+        found = along_rows(
+            known, "speed_viscosity_product", partial(_newtonian, tables=tables, theory=theory)
+        )
     else:
         known.pop("speed_viscosity_product", None)
         curves = list({id(curve): curve for curve in tables.flow_curves}.values())
@@ -116,7 +150,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...]) -> dict[str, F
         known[_CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
         known["sliding_speed"] = inputs["sliding_speed"]
         distinct = Tables(tables.spectrum, tuple(curves))
-        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct))
+        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct, theory=theory))
     found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
     return found
 
@@ -132,29 +166,32 @@ def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
         return {"film_near_inlet": fraction > NOTABLE_FILM, "film_beyond_inlet": fraction > THICKEST_FILM}
 
 
-def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables) -> dict[str, FloatArray]:
-    if len(products) == 1:
-        return _everything(curve_of(inputs, products[0], tables), inputs)
-    # a load that differs by vector, or a covariate: each vector has its own abscissae
+def _newtonian(inputs: Inputs, products: FloatArray, tables: Tables, theory: Theory) -> dict[str, FloatArray]:
+    batch = max(len(products), *(np.size(value) for value in inputs.values()))
+    if len(products) == 1 and theory.flow_factors == "none":
+        return _everything(curve_of(inputs, products[0], tables, theory), inputs)
+    # a load that differs by vector, or a covariate: each vector has its own abscissae; and it has flow factors of its own
     rows = [
-        _everything(curve_of(one, products[b], tables), one)
-        for b, one in enumerate(_one_by_one(inputs, len(products)))
+        _everything(curve_of(one, products[b if len(products) > 1 else 0], tables, theory), one)
+        for b, one in enumerate(one_by_one(inputs, batch))
     ]
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
 
 
-def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables) -> dict[str, FloatArray]:
+def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables, theory: Theory) -> dict[str, FloatArray]:
     assert tables.flow_curves is not None
     batch = max(len(speeds), *(np.shape(value)[0] for value in inputs.values()))
     rows = []
-    for b, one in enumerate(_one_by_one(inputs, batch)):
+    for b, one in enumerate(one_by_one(inputs, batch)):
         liquid = tables.flow_curves[int(one[_CURVE])]
-        curve, _ = stribeck_curve_of_liquid(speeds[b if len(speeds) > 1 else 0], liquid, **_ball(one, tables))
+        curve, _ = stribeck_curve_of_liquid(
+            speeds[b if len(speeds) > 1 else 0], liquid, **_ball(one, tables, theory)
+        )
         rows.append(_everything(curve, one))
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
 
 
-def _one_by_one(inputs: Inputs, count: int) -> list[dict[str, FloatArray]]:
+def one_by_one(inputs: Inputs, count: int) -> list[dict[str, FloatArray]]:
     """Inputs that broadcast to ``(B,)`` as scalars for each of the vectors."""
     return [
         {name: np.asarray(value)[b if np.shape(value)[0] > 1 else 0] for name, value in inputs.items()}

@@ -13,7 +13,9 @@ from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
 from skinbayes.forward.stribeck_direct import (
+    BALL,
     FIELDS,
+    Theory,
     film_flags,
     limit_of,
     speed_viscosity_product_of,
@@ -115,7 +117,12 @@ def _liquids(flow_curves: tuple[FlowCurve, ...]) -> LiquidRows:
 
 
 def prepare(
-    model: ForwardModel, ranges: Ranges, tables: Tables, progress: Progress | None, cores: int
+    model: ForwardModel,
+    ranges: Ranges,
+    tables: Tables,
+    progress: Progress | None,
+    cores: int,
+    theory: Theory = BALL,
 ) -> ForwardModel:
     """The forward model with a table of films for the ranges, from disk if it was built before.
 
@@ -123,6 +130,11 @@ def prepare(
     itself is used, which is slow.
     """
     names = model.input_names()
+    if theory.flow_factors != "none":
+        return replace(
+            model,
+            accuracy="Each curve is solved by itself, which is slow: tables of films hold no flow factors.",
+        )
     varying = [
         name
         for name, (low, high) in ranges.items()
@@ -142,7 +154,13 @@ def prepare(
         name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
     }
-    plan = FilmTablePlan(held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), **numbers)
+    plan = FilmTablePlan(
+        held,
+        spectrum=spectrum,
+        largest_strain=float(fixed["strain_limit"]),
+        contact=theory.contact,
+        **numbers,
+    )
 
     table = kept_table(
         "stribeck",
@@ -158,7 +176,8 @@ def prepare(
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
         abscissa=tabulated.abscissa,
-        accuracy=f"Friction is read from a table of films; at {table.held_out_count} places that it was not made from it "
-        f"differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and {worst:.2g} % at "
-        "worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as impossible.",
+        accuracy=f"Friction is read from a table of films of a {theory.contact} contact; at {table.held_out_count} places that "
+        f"it was not made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th "
+        f"percentile and {worst:.2g} % at worst. Beyond the table, which holds each prior but for 0.001 % on either side, "
+        "parameters count as impossible.",
     )

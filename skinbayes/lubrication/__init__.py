@@ -7,6 +7,7 @@ from skinbayes.lubrication.asperities import (
     asperity_table,
     law_of_table,
 )
+from skinbayes.lubrication.contact_films import CONTACTS, LINE, POINT
 from skinbayes.lubrication.effective_viscosity import EffectiveViscosity, stribeck_curve_of_liquid
 from skinbayes.lubrication.film import NODES, LubricatedFilms, lubricated_films
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, HOMOGENEOUS_PARAMETERS, FilmAxes, film_axes
@@ -32,6 +33,7 @@ from skinbayes.lubrication.gap_flow import (
     gap_flow_factors,
     tabulated_flow_factors,
 )
+from skinbayes.lubrication.point_film import CELLS, LubricatedPointFilms, lubricated_point_films
 from skinbayes.lubrication.rheology import FlowCurve, Rheology, ShearThinning, thinned_viscosity
 from skinbayes.lubrication.stribeck import (
     LARGE_STRAIN,
@@ -50,12 +52,16 @@ from skinbayes.lubrication.viscoelastic_stribeck import (
 )
 
 __all__ = [
+    "CELLS",
+    "CONTACTS",
     "FILM_PARAMETERS",
     "HOMOGENEOUS_PARAMETERS",
     "LARGEST_STRAIN",
     "LARGE_STRAIN",
+    "LINE",
     "NODES",
     "NOTABLE_STRAIN",
+    "POINT",
     "REASONS_FOR_NO_PREDICTION",
     "SPHERE_OVER_CYLINDER",
     "THICKEST_FILM",
@@ -72,6 +78,7 @@ __all__ = [
     "LiquidRows",
     "LubricatedBalls",
     "LubricatedFilms",
+    "LubricatedPointFilms",
     "PatirCheng",
     "Rheology",
     "ShearThinning",
@@ -89,6 +96,7 @@ __all__ = [
     "law_of_table",
     "liquid_rows",
     "lubricated_films",
+    "lubricated_point_films",
     "stribeck_curve",
     "stribeck_curve_of_liquid",
     "tabulated_flow_factors",

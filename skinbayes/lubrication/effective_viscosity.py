@@ -10,13 +10,14 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, BoolArray, FloatArray
 from skinbayes.contact.correction import AREA_CORRECTION
-from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.contact.solid import ElasticSolid
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
-from skinbayes.lubrication.film import NODES, lubricated_films
+from skinbayes.lubrication.contact_films import POINT, contact_films
+from skinbayes.lubrication.film import NODES
 from skinbayes.lubrication.flow_curves import LiquidRows, liquid_rows
 from skinbayes.lubrication.flow_factors import FlowFactors
+from skinbayes.lubrication.point_film import CELLS
 from skinbayes.lubrication.rheology import FlowCurve
 from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM, StribeckCurve, stribeck_curve
 from skinbayes.roughness.spectrum import PowerSpectrum
@@ -51,7 +52,9 @@ def stribeck_curve_of_liquid(
     area_correction: float = AREA_CORRECTION,
     velocity_shift_factor: float = 1.0,
     flow_factors: FlowFactors | None = None,
+    contact: str = POINT,
     nodes: int = NODES,
+    cells: int = CELLS,
     thickest_film: float = THICKEST_FILM,
     largest_strain: float = LARGEST_STRAIN,
 ) -> tuple[StribeckCurve, EffectiveViscosity]:
@@ -72,7 +75,9 @@ def stribeck_curve_of_liquid(
     area_correction : γ, dimensionless, 0 < γ ≤ 1
     velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
     flow_factors : of the flow between rough surfaces; None for trivial ones
-    nodes : number of places across the contact, dimensionless
+    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
+    nodes : number of places across a line contact, dimensionless
+    cells : number of cells of half a point contact, dimensionless
     thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
@@ -104,7 +109,7 @@ def stribeck_curve_of_liquid(
     >>> curve, viscosity = stribeck_curve_of_liquid([1e-3, 1e-2], honey, normal_force=0.2, sphere_radius=8e-3,
     ...     spectrum=surface, skin=wet, frictional_shear_stress=15e6)
     >>> print(curve.friction_coefficient.round(3), viscosity.viscosity.round(1))
-    [0.108 0.325] [25.  24.6]
+    [0.127 0.314] [25.  24.5]
     """
     speed = np.atleast_1d(np.asarray(sliding_speed, dtype=np.float64))
     wrong = np.flatnonzero(~(np.isfinite(speed) & (speed >= 0)))
@@ -114,7 +119,6 @@ def stribeck_curve_of_liquid(
         )
     liquids = liquid_rows([flow_curve]).at(np.zeros(speed.size, dtype=np.intp))
     modulus = float(skin.contact_modulus)
-    cylinder = cylinder_of_sphere(normal_force, sphere_radius, reduced_modulus=modulus)
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     law = law_of_table(*table) if is_lawful(*table) else None
 
@@ -123,14 +127,16 @@ def stribeck_curve_of_liquid(
         if law is None:
             return np.full(speed.shape, np.nan)
         products = np.exp(log_viscosity) * speed * velocity_shift_factor
-        films = lubricated_films(
+        films, _ = contact_films(
             products,
-            cylinder_radius=float(cylinder.cylinder_radius),
-            load_per_length=float(cylinder.load_per_length),
+            normal_force=float(normal_force),
+            sphere_radius=float(sphere_radius),
             reduced_modulus=modulus,
             asperities=law,
+            contact=contact,
             flow_factors=flow_factors,
             nodes=nodes,
+            cells=cells,
         )
         with np.errstate(divide="ignore"):
             return np.asarray(np.log(speed / films.central_film))
@@ -147,7 +153,9 @@ def stribeck_curve_of_liquid(
         area_correction=area_correction,
         velocity_shift_factor=velocity_shift_factor,
         flow_factors=flow_factors,
+        contact=contact,
         nodes=nodes,
+        cells=cells,
         thickest_film=thickest_film,
         largest_strain=largest_strain,
     )

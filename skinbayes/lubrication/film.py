@@ -8,7 +8,6 @@ equation with the mean speed v/2 of the two surfaces, ``d/dx[φ_p u³/(12η) dp/
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -18,11 +17,12 @@ from skinbayes.contact.line_contact import HertzLine, line_contact
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.drag import drag_integrals
-from skinbayes.lubrication.flow_factors import FlowFactors, TrivialFlowFactors
+from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.grid import LineGrid, line_grid
-from skinbayes.lubrication.newton import LOAD, Law, Transport
+from skinbayes.lubrication.newton import LOAD, Law, Solver
 from skinbayes.lubrication.rheology import Rheology
 from skinbayes.lubrication.sweep import sweep
+from skinbayes.lubrication.transport import no_asperities, transport_of
 
 NODES = 80
 """Nodes across the contact unless told otherwise. Friction in the case of Fig. 13 is then within 0.3 % of that on ten times
@@ -31,6 +31,8 @@ as many; over random balls, skins and speeds the largest error of a curve is 0.3
 _WEAKEST = (
     1e-7  # of the squared roughness: below this λ the fluid carries about that share and all is linear in λ
 )
+
+_THICKER = (1.0, 2.0, 4.0)  # first guesses of the approach over a film thicker than the asperities
 
 _FASTEST = 1e10  # λ beyond which the parabola drowns in rounding
 
@@ -159,17 +161,18 @@ def films_of(
         return _no_films(product.size, nodes)
     height = float(hertz.half_width**2 / cylinder_radius)
     law: Law = (
-        _no_asperities if asperities is None else asperities.scaled(height, float(hertz.maximum_pressure))
+        no_asperities if asperities is None else asperities.scaled(height, float(hertz.maximum_pressure))
     )
-    rough, tail = (0.0, 0.0) if asperities is None else _roughness(law)
+    rough, tail = (0.0, 0.0) if asperities is None else roughness_of(law)
     number = np.maximum(np.where(known, wanted, wanted[known].min()), _WEAKEST * rough**2)
     grid = grid_for(float(number.min()), float(number.max()), rough, tail, nodes)
     if respond is not None:
         grid = respond(grid)
-    transport = _transport(
+    transport = transport_of(
         flow_factors, rheology, height, lubrication_number_per_product(cylinder_radius, hertz)
     )
-    found, _ = sweep(number, grid, law, transport, 1.5 + rough)
+    thick = [factor * (1.5 + rough) for factor in _THICKER]
+    found, _ = sweep(number, Solver(grid, law), transport, thick)
 
     states = [state if here else None for state, here in zip(found, known, strict=True)]
     missing = np.full(grid.position.size, np.nan)
@@ -221,46 +224,10 @@ def grid_for(smallest: float, largest: float, rough: float, tail: float, nodes: 
     return line_grid(inlet, outlet, nodes, float(np.clip(1.4 * thinnest ** (2 / 3), 2e-3, 0.15)))
 
 
-def _roughness(law: Law) -> tuple[float, float]:
+def roughness_of(law: Law) -> tuple[float, float]:
+    """H at P_a = 1 and the decay length of an asperity law, dimensionless."""
     assert isinstance(law, AsperityLaw)
     return law.separation_at(1.0), law.decay_length
-
-
-def _no_asperities(film: FloatArray) -> tuple[FloatArray, FloatArray]:
-    zero = np.zeros_like(film)
-    return zero, zero
-
-
-def _smooth_transport(film: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    square = film * film
-    return square * film, 3 * square, film, np.ones_like(film)
-
-
-def _transport(
-    flow_factors: FlowFactors | None, rheology: Rheology | None, height: float, per_product: float
-) -> Callable[[float], Transport]:
-    """Film law at each lubrication number: conductance φ_p H³ η0/η and dragged volume H + Φ_s, with slopes."""
-    if flow_factors is None and rheology is None:
-        return lambda number: _smooth_transport
-    factors = flow_factors if flow_factors is not None else TrivialFlowFactors()
-
-    def at(number: float) -> Transport:
-        speed = 0.0 if rheology is None else number / per_product / rheology.low_shear_viscosity
-
-        def transport(film: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-            factor, factor_slope, shear, shear_slope = factors.flow(film * height)
-            cube = film**3
-            conduct = factor * cube
-            slope = 3 * factor * film * film + factor_slope * height * cube
-            if rheology is not None:
-                thinning, power = rheology.relative(speed / (film * height))
-                conduct = conduct / thinning
-                slope = slope / thinning + conduct * power / film
-            return conduct, slope, film + shear / height, 1 + shear_slope
-
-        return transport
-
-    return at
 
 
 def _at_middle(grid: LineGrid, film: FloatArray) -> FloatArray:

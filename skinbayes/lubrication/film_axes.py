@@ -51,6 +51,8 @@ _INVARIANT_NODES = (0.8, 0.85, 0.7, 0.8)
 _PARAMETER_NODES = (0.8, 1.0, 0.9, 1.1, 0.8, 0.7)
 
 _STRAIN = "normal_force"  # what the name of the invariant F R/E1 starts with
+_RADIUS = 3  # place of R among the parameters
+
 _SLACK = 1e-9  # of ln: how far rounding may carry a parameter out of its range
 
 FULLEST = 0.3
@@ -210,6 +212,7 @@ def film_axes(
     counts: Mapping[str, int] | None = None,
     largest_strain: float = np.inf,
     stress_scale: float | None = None,
+    radius_matters: bool = False,
 ) -> FilmAxes:
     """Axes for parameters that vary within ranges: as few as the similarity of the problem allows (Sect. 6 of the paper).
 
@@ -223,6 +226,8 @@ def film_axes(
     poisson_ratio_bulk : ν1, dimensionless
     counts : number of nodes of an axis, dimensionless, by its name; from the width of its range unless told otherwise
     largest_strain : b/Rc, dimensionless, beyond which no contact is wanted; it shortens the axis F R/E1
+    radius_matters : the drag of a ball ends at its edge, so that R matters beside the combinations: an axis of its own where
+        the others do not determine it
     stress_scale : √V/(E0 h_rms), 1/m, of the rough surface; with it an axis ends where contact is fullest
 
     Returns
@@ -268,7 +273,10 @@ def film_axes(
     else:
         names = tuple(invariant_names[row] for row in rows)
         combination = invariants[rows]
-        density = [_INVARIANT_NODES[kept[row]] for row in rows]
+        if radius_matters and _RADIUS in varying:
+            names = (*names, FILM_PARAMETERS[_RADIUS])
+            combination = np.vstack([combination, np.eye(6)[_RADIUS]])
+        density = [*(_INVARIANT_NODES[kept[row]] for row in rows), *[0.0] * (len(names) - len(rows))]
     # the force last: it is the one that differs from row to row of a data set
     order = sorted(range(len(names)), key=lambda place: bool(combination[place, 4]))
     names = tuple(names[place] for place in order)
@@ -281,7 +289,8 @@ def film_axes(
         most = 3 * (np.log(largest_strain) + cylinder + high[3] - half_width)
         end[strains[0]] = min(end[strains[0]], max(most, start[strains[0]] + 1e-3))
     half = (end - start) / 2
-    excluded = _complement(influence) @ invariants
+    everything = np.vstack([invariants, np.eye(6)[_RADIUS]]) if radius_matters else invariants
+    excluded = _complement(everything[:, varying]) @ everything
     if homogeneous:
         excluded = np.vstack([excluded, _INVARIANTS[0]])  # E1/E0 is 1
     wanted = dict(counts or {})

@@ -17,7 +17,9 @@ from skinbayes.lubrication._uniform_spline import (
     gather,
     gather_both,
 )
+from skinbayes.lubrication.contact_films import POINT
 from skinbayes.lubrication.film_axes import Scales, film_scales
+from skinbayes.lubrication.film_point import end_coordinate, log_end
 from skinbayes.lubrication.film_reference import SmoothFilms
 from skinbayes.lubrication.film_table import (
     ANCHORS,
@@ -28,11 +30,11 @@ from skinbayes.lubrication.film_table import (
     FRACTION,
     MINIMUM,
     PRESSURE_FLOW,
+    REFERENCE,
     SLOWEST,
     FilmTable,
 )
 
-_REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
 _POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
 
@@ -48,6 +50,8 @@ class ContractedFilms:
     anchor, unit : ln λ that speeds are counted from and their unit, dimensionless, shape ``(B, 1)`` or ``(B, N)``
     speeds : number of speeds, dimensionless
     smooth : films of the smooth ball
+    end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line
+        contact and for points, of which no drag is asked
     scales : of the contact, shape ``(B, 1)`` or ``(B, N)`` each
     inside : where the table holds the parameters
     """
@@ -58,6 +62,7 @@ class ContractedFilms:
     unit: FloatArray
     speeds: int
     smooth: SmoothFilms
+    end: FloatArray | None
     scales: Scales
     inside: BoolArray
 
@@ -72,7 +77,9 @@ class ContractedFilms:
     def _mapped(self, function: Callable[[Any], Any]) -> ContractedFilms:
         names = ("start", "anchor", "unit", "inside")
         scales = Scales(*(function(scale) for scale in self.scales))
-        return replace(self, scales=scales, **{name: function(getattr(self, name)) for name in names})
+        return replace(
+            self, scales=scales, end=None, **{name: function(getattr(self, name)) for name in names}
+        )
 
     def log_outputs(self, log_number: FloatArray, outputs: Sequence[int]) -> list[FloatArray]:
         """ln of some outputs at ln λ of shape ``(B, N)``; of shape ``(P,)`` for points."""
@@ -92,7 +99,7 @@ class ContractedFilms:
         start = self.start + cell
         weights, slopes = cubic_weights(place), cubic_slopes(place) if slope else ()
         ends = _Ends(self, position, log_number)
-        references = [_REFERENCE[output] for output in outputs if output in _REFERENCE]
+        references = [REFERENCE[output] for output in outputs if output in REFERENCE]
         smooth = iter(self._smooth(ends.held_number, references, slope))
         found: list[FloatArray] = []
         for output in outputs:
@@ -103,7 +110,7 @@ class ContractedFilms:
                 rate *= per_unit / self.unit
             else:
                 value = gather(self.flat, start, offset, weights)
-            if output in _REFERENCE:
+            if output in REFERENCE:
                 value += next(smooth)
                 if rate is not None:
                     rate += next(smooth)
@@ -114,7 +121,7 @@ class ContractedFilms:
         if not references:
             return []
         wanted = range(references[0], references[-1] + 1)
-        parts = self.smooth(log_number, wanted, slope)
+        parts = self.smooth(log_number, wanted, slope, self.end)
         each = 2 if slope else 1
         return [parts[(reference - wanted[0]) * each + i] for reference in references for i in range(each)]
 
@@ -150,7 +157,7 @@ class _Ends:
             value[self.slow] += power * self.below + bend * (growth - 1)
             if rate is not None:
                 rate[self.slow] = power + bend * growth
-        if self.fast[0].size and output not in _REFERENCE:
+        if self.fast[0].size and output not in REFERENCE:
             value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
         return [value] if rate is None else [value, rate]
 
@@ -162,10 +169,12 @@ class _Ends:
         )
         unit = np.broadcast_to(films.unit, self.shape)[where]
         rate = (films.flat.take(start + 2) - films.flat.take(start)) / 2 * self.per_unit / unit
-        if output in _REFERENCE:
+        if output in REFERENCE:
             at = np.broadcast_to(films.anchor + films.unit * (SLOWEST if point == 0 else FASTEST), self.shape)
-            reference = _REFERENCE[output]
-            rate = rate + films.smooth(at[where], range(reference, reference + 1), slope=True)[1]
+            reference = REFERENCE[output]
+            end = None if films.end is None else np.broadcast_to(films.end, self.shape)[where]
+            wanted = range(reference, reference + 1)
+            rate = rate + films.smooth(at[where], wanted, slope=True, end=end)[1]
         return np.asarray(rate)
 
 
@@ -191,6 +200,12 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     found = summed(table.coefficients[..., :columns], held, len(log_parameters[0]))
     flat = found.reshape(-1)
     start = np.arange(0, flat.size, columns).reshape(found.shape[:2])
+    scales = film_scales(log_parameters, table.poisson_ratio_bulk)
+    end = None
+    if table.contact == POINT:
+        end = end_coordinate(log_end(scales.strain), table.end_low, table.end_high)
+        inside = inside & (np.abs(end) <= 1)
+        end = np.where(np.abs(end) <= 1, end, 0.0)
     return ContractedFilms(
         flat,
         start,
@@ -198,6 +213,7 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
         flat.take(start + 1),
         table.speeds,
         table.smooth,
-        film_scales(log_parameters, table.poisson_ratio_bulk),
+        end,
+        scales,
         inside,
     )

@@ -17,7 +17,9 @@ from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.line_contact import cylinder_of_sphere
 from skinbayes.contact.solid import ElasticSolid, reduced_modulus
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw, asperity_law
+from skinbayes.lubrication.contact_films import CONTACTS, POINT
 from skinbayes.lubrication.film_axes import (
     FILM_PARAMETERS,
     HOMOGENEOUS_PARAMETERS,
@@ -50,6 +52,8 @@ class FilmTablePlan:
     speeds : number of speeds, dimensionless
     nodes : places across the contact, dimensionless; with 96 friction is within 0.2 % of that on many more
     checked : number of random places, dimensionless, at which the table is compared with direct solutions
+    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
+    cells : of half a point contact, dimensionless
     largest_strain : b/Rc, dimensionless, that the table has to reach
 
     References
@@ -75,7 +79,15 @@ class FilmTablePlan:
     speeds: int = 31
     nodes: int = 96
     checked: int = 120
+    contact: str = POINT
+    cells: int = 400
     largest_strain: float = LARGEST_STRAIN
+
+    def __post_init__(self) -> None:
+        if self.contact not in CONTACTS:
+            raise InputError(
+                f"contact is {self.contact!r:.60}, but must be {' or '.join(map(repr, CONTACTS))}."
+            )
 
     @cached_property
     def axes(self) -> FilmAxes:
@@ -94,6 +106,7 @@ class FilmTablePlan:
             stress_scale=float(
                 np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self._rms_height)
             ),
+            radius_matters=self.contact == POINT,
         )
 
     def key(self) -> dict[str, Any]:
@@ -112,7 +125,8 @@ class FilmTablePlan:
             "band": list(ends),
             "spectrum": hashlib.sha256(np.ascontiguousarray(power, dtype="<f8").tobytes()).hexdigest(),
             **{name: float(getattr(self, name)) for name in numbers},
-            **{name: getattr(self, name) for name in ("speeds", "nodes", "checked")},
+            **{name: getattr(self, name) for name in ("speeds", "nodes", "checked", "contact")},
+            **({"cells": self.cells} if self.contact == POINT else {}),
         }
 
     def ball(self, log_parameters: FloatArray) -> Ball:
@@ -137,6 +151,8 @@ class FilmTablePlan:
             variance * times * times,
             self.area_correction,
             stiffness,
+            force,
+            radius,
             float(cylinder.cylinder_radius),
             float(cylinder.load_per_length),
             modulus,

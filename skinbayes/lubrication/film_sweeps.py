@@ -12,8 +12,10 @@ from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.line_contact import line_contact
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
-from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
+from skinbayes.lubrication.contact_films import LINE, contact_films, weighted
+from skinbayes.lubrication.film import lubrication_number_per_product
 from skinbayes.lubrication.film_table import FRACTION
+from skinbayes.lubrication.point_film import CELLS
 
 HALF, FAINT = 0.5, 1e-3
 """Load fractions of the asperities at the two lubrication numbers that a table counts speeds from."""
@@ -38,6 +40,8 @@ class Ball:
     twice_variance : V, Pa²
     area_correction : γ, dimensionless
     stiffness : E0 h_rms, Pa m
+    normal_force : F_N, N
+    sphere_radius : R, m
     cylinder_radius : Rc, m
     load_per_length : f_N, N/m
     reduced_modulus : E1*, Pa
@@ -47,12 +51,16 @@ class Ball:
     twice_variance: float
     area_correction: float
     stiffness: float
+    normal_force: float
+    sphere_radius: float
     cylinder_radius: float
     load_per_length: float
     reduced_modulus: float
 
-    def outputs(self, log_number: FloatArray, nodes: int) -> FloatArray:
-        """ln of the outputs at ln λ of shape ``(K,)``, shape ``(6, K)``.
+    def outputs(
+        self, log_number: FloatArray, nodes: int, *, contact: str = LINE, cells: int = CELLS
+    ) -> FloatArray:
+        """ln of the outputs at ln λ of shape ``(K,)``, shape ``(6, K)``; those of a ball in the units of its cylinder.
 
         Raises
         ------
@@ -65,26 +73,30 @@ class Ball:
         number = np.exp(log_number)
         products = number / lubrication_number_per_product(self.cylinder_radius, hertz)
         for more in _MORE_NODES:
-            films = lubricated_films(
+            films, load = contact_films(
                 products,
-                cylinder_radius=self.cylinder_radius,
-                load_per_length=self.load_per_length,
+                normal_force=self.normal_force,
+                sphere_radius=self.sphere_radius,
                 reduced_modulus=self.reduced_modulus,
                 asperities=self.law,
+                contact=contact,
                 nodes=nodes + more,
+                cells=cells + 4 * more,
             )
             area = relative_contact_area(
                 films.asperity_pressure, self.twice_variance, area_correction=self.area_correction
             )
             # 1 − (1 − fraction) has no digits where the fraction is small
-            carried = films.asperity_pressure @ films.load_weight / self.load_per_length
+            carried = weighted(films.asperity_pressure, films.load_weight) / load
             fraction = np.where(films.asperity_load_fraction > 0.5, films.asperity_load_fraction, carried)
             found = np.array(
                 [
                     films.central_film / height,
-                    np.maximum(self.stiffness * (area @ films.load_weight) / self.load_per_length, _LEAST),
+                    np.maximum(self.stiffness * weighted(area, films.load_weight) / load, _LEAST),
                     films.couette * 3 * np.pi / slope / number,
-                    films.pressure_flow * np.pi / slope,
+                    (films.pressure_flow if contact == LINE else films.pressure_flow + films.couette)
+                    * np.pi
+                    / slope,
                     films.minimum_film / height,
                     np.maximum(fraction, _LEAST),
                 ]

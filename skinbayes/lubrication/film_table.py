@@ -15,7 +15,13 @@ VERSION = 1
 """Of what the numbers in a table mean; tables of another version are built anew."""
 
 CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
-"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load fraction of asperities."""
+"""Outputs of a film: ln of H under the middle, E0 h ∫A dX/∫P dX, ∫θ dX/H, ∫H dP_f, smallest H, load fraction of asperities.
+
+For a point contact they are those of a cylinder of the same friction and films, and the fourth is the whole drag of the liquid,
+``∫H dP_f + (λ/3)∫θ dX/H``: the pressure flow up to the edge of a ball may be of either sign."""
+
+REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
+"""Outputs that are relative to those of the smooth ball, and their places among those."""
 
 ANCHORS = 2
 """Numbers before the outputs of a material: ln λ that speeds are counted from, and the unit of ln λ."""
@@ -35,6 +41,9 @@ class FilmTable:
     coefficients : dimensionless, shape ``(n1, …, nA, 2 + 6 (S + 2))``; Chebyshev coefficients along the axes of the
         anchors and of the B-spline coefficients of the six outputs
     speeds : S, number of speeds, dimensionless
+    contact : "point" or "line"
+    end_low, end_high : ln of the smallest and largest radius over that of the contact at which the drag of a ball ends,
+        dimensionless; 0 of a line contact
     smooth : films of the smooth ball, which the outputs but the boundary term and the load fraction are relative to
     held_out : median, 99th percentile and largest relative error of the friction coefficient at random places,
         dimensionless, shape ``(3,)``
@@ -45,6 +54,9 @@ class FilmTable:
     poisson_ratio_bulk: float
     coefficients: FloatArray
     speeds: int
+    contact: str
+    end_low: float
+    end_high: float
     smooth: SmoothFilms
     held_out: FloatArray
     held_out_count: int

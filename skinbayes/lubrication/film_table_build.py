@@ -7,24 +7,39 @@ from functools import partial
 from itertools import product
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Kept, Progress, Tasks
 from skinbayes.emulation.chebyshev import grid_coefficients, summed, zeros
 from skinbayes.lubrication._uniform_spline import spline_coefficients
+from skinbayes.lubrication.contact_films import LINE, POINT
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_plan import FilmTablePlan
-from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_point import (
+    corrected,
+    correction,
+    end_coordinate,
+    log_end,
+    relative_outputs,
+    smooth_point_films,
+    whole_drag,
+)
+from skinbayes.lubrication.film_reference import SmoothFilms, smooth_films
 from skinbayes.lubrication.film_sweeps import Ball
 from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
+from skinbayes.lubrication.point_film import CELLS
 from skinbayes.lubrication.stribeck import THICKEST_FILM
 
 _ANCHOR_COUNT = (
     5  # nodes of an axis, at most, at which the anchors are found; between them they are polynomials
 )
-_CHECK_NODES = 128
+_CHECK_NODES, _CHECK_CELLS = 128, 600
+_EVERY = 2  # of the speeds at which the cylinder is solved, the ball is, too
+_CORRECTED = 0.5  # nodes at which the ball is solved, over those at which its cylinder is
+_SPARE = 1e-3  # of ln, beyond the ends of the drag
 
 
 def build_film_table(
@@ -75,6 +90,8 @@ def build_film_table(
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
     sweeps = len(places) + len(coarse_places) + plan.checked
+    point_places = _nodes_of(_corrected_at(axes.counts)) if plan.contact == POINT else np.empty((0, 0))
+    sweeps += 2 * len(point_places)
 
     with Tasks(processes, sweeps, progress, kept) as solve:
         balls = (plan.ball(axes.representative(place)) for place in coarse_places)
@@ -89,8 +106,18 @@ def build_film_table(
         balls = (plan.ball(axes.representative(place)) for place in places)
         outputs = solve("outputs", partial(_outputs, nodes=plan.nodes), zip(balls, numbers, strict=True))
         smooth = smooth_films()
-        for output, reference in zip((0, 2, 3, 4), smooth(numbers, range(4)), strict=True):
-            outputs[:, output] -= reference
+        ends = (0.0, 0.0)
+        if plan.contact == LINE:
+            outputs = relative_outputs(outputs, numbers, smooth)
+        else:
+            outputs = relative_outputs(whole_drag(outputs, numbers), numbers, _with_whole_drag(smooth))
+            ends = _ends_of(plan)
+            few = grid[::_EVERY]
+            addition, smooth = _correction(plan, solve, point_places, anchor_terms, grid, ends)
+            addition = CubicSpline(few, addition, axis=-1)(grid)
+            terms = grid_coefficients(addition.reshape(*_corrected_at(axes.counts), -1), ends=False)
+            there = summed(terms, list(places.T[:, :, None]), len(places))[:, 0]
+            outputs = corrected(outputs, there.reshape(outputs.shape), grid)
         splines = spline_coefficients(outputs)
         # at the last speeds the ball is smooth to 1e-4: exactly so from there on
         splines[:, (0, 2, 3, 4), -3:] = 0.0
@@ -99,6 +126,9 @@ def build_film_table(
             axes=axes,
             coefficients=np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
             speeds=plan.speeds,
+            contact=plan.contact,
+            end_low=ends[0],
+            end_high=ends[1],
             smooth=smooth,
             poisson_ratio_bulk=plan.poisson_ratio_bulk,
             held_out=np.full(3, np.nan),
@@ -113,9 +143,63 @@ def _nodes_of(counts: tuple[int, ...]) -> FloatArray:
     return np.array(nodes).reshape(len(nodes), len(counts))
 
 
-def _outputs(task: tuple[Ball, FloatArray], nodes: int) -> FloatArray:
+def _outputs(
+    task: tuple[Ball, FloatArray], nodes: int, contact: str = LINE, cells: int = CELLS
+) -> FloatArray:
     ball, log_number = task
-    return ball.outputs(log_number, nodes)
+    return ball.outputs(log_number, nodes, contact=contact, cells=cells)
+
+
+def _corrected_at(counts: tuple[int, ...]) -> tuple[int, ...]:
+    """Nodes of the axes at which the ball itself is solved."""
+    return tuple(max(min(count, 3), round(_CORRECTED * count)) for count in counts)
+
+
+def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
+    """ln of the smallest and largest end of the drag in a table, over the radius of the contact."""
+    axes = plan.axes
+    # a/R goes as (F R/E1)^(1/3)/R, and the ends of F R/E1 and of R may meet
+    products = axes.low[3] + axes.low[4] - axes.high[1], axes.high[3] + axes.high[4] - axes.low[1]
+    radii = axes.high[3], axes.low[3]
+    places = [
+        [0.0, 0.0, 0.0, radius, product - radius, 0.0]
+        for radius, product in zip(radii, products, strict=True)
+    ]
+    ends = log_end(film_scales(list(np.array(places).T), plan.poisson_ratio_bulk).strain)
+    return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
+
+
+def _with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
+    """Smooth films of a cylinder with the whole drag of the liquid in place of the pressure flow."""
+    log_number = smooth.lowest + smooth.step * np.arange(smooth.coefficients.shape[1] - 2)
+    values = np.array(smooth(log_number, range(4)))
+    values[2] = np.logaddexp(values[2], log_number + values[1] - np.log(3.0))
+    return SmoothFilms(spline_coefficients(values), smooth.lowest, smooth.step)
+
+
+def _correction(
+    plan: FilmTablePlan,
+    solve: Tasks,
+    places: FloatArray,
+    anchor_terms: FloatArray,
+    grid: FloatArray,
+    ends: tuple[float, float],
+) -> tuple[FloatArray, SmoothFilms]:
+    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, and the smooth films."""
+    at_nodes = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
+    numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
+    few = numbers[:, ::_EVERY]
+    parameters = plan.axes.representative(places)
+    found = {}
+    for contact, at in ((LINE, numbers), (POINT, few)):
+        balls = (plan.ball(one) for one in parameters)
+        outputs = partial(_outputs, nodes=plan.nodes, contact=contact, cells=plan.cells)
+        found[contact] = solve(f"{contact} for the correction", outputs, zip(balls, at, strict=True))
+    smooth = smooth_point_films(*ends)
+    end = end_coordinate(log_end(film_scales(list(parameters.T), plan.poisson_ratio_bulk).strain), *ends)
+    point = relative_outputs(found[POINT], few, smooth, end)
+    line = relative_outputs(whole_drag(found[LINE], numbers), numbers, _with_whole_drag(smooth_films()))
+    return correction(point, line, grid[::_EVERY], grid), smooth
 
 
 def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
@@ -139,14 +223,16 @@ def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
     shear_stress = np.array(
         [np.sqrt(np.pi * plan.area_correction * ball.twice_variance) / 2 for ball in balls]
     )
-    found = solve("check", partial(_outputs, nodes=_CHECK_NODES), zip(balls, number[:, None], strict=True))
+    outputs_of = partial(_outputs, nodes=_CHECK_NODES, contact=plan.contact, cells=_CHECK_CELLS)
+    found = solve("check", outputs_of, zip(balls, number[:, None], strict=True))
     outputs = found[..., 0]
     slope = np.exp(scales.strain)
     direct = (
         shear_stress * np.exp(outputs[:, 1]) / [ball.stiffness for ball in balls]
-        + np.exp(number + outputs[:, 2]) / (3 * np.pi) * slope
         + np.exp(outputs[:, 3]) / np.pi * slope
     )
+    if plan.contact == LINE:
+        direct = direct + np.exp(number + outputs[:, 2]) / (3 * np.pi) * slope
     parameters = dict(zip(FILM_PARAMETERS, np.exp(drawn.T), strict=True))
     products = np.exp(number - scales.number_per_product)
     tabulated = tabulated_friction(

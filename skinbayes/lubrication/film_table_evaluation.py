@@ -128,7 +128,7 @@ def tabulated_friction(
     >>> table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), checked=0))
     >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], balls=LubricatedBalls(parameters=ball,
     ...     frictional_shear_stress=15e6)).friction_coefficient.round(3))
-    [1.423 0.915 0.109]
+    [1.423 1.006 0.132]
     """
     return TabulatedFriction(*_tabulated(table, speed_viscosity_product, balls, None))
 
@@ -183,7 +183,7 @@ def tabulated_friction_of_liquids(
     >>> friction, viscosity = tabulated_friction_of_liquids(table, [1e-3, 1e-2],
     ...     balls=LubricatedBalls(parameters=ball, frictional_shear_stress=15e6), liquids=liquids)
     >>> print(friction.friction_coefficient.round(3), viscosity.viscosity.round(1), viscosity.unmeasured)
-    [0.108 0.325] [25.  24.6] [False False]
+    [0.127 0.313] [25.  24.5] [False False]
     """
     found = _tabulated(table, sliding_speed, balls, liquids)
     return TabulatedFriction(*found[:-3]), EffectiveViscosity(*found[-3:])
@@ -272,6 +272,8 @@ def _friction(
     boundary = shear_stress * np.exp(logs[BOUNDARY] - log_stiffness) + missing
     couette = np.exp(logs[COUETTE] + (log_number + scales.strain)) * (1 / (3 * np.pi)) + missing
     pressure = np.exp(logs[PRESSURE_FLOW] + scales.strain) * (1 / np.pi) + missing
+    if films.end is not None:  # it is the whole drag of the liquid
+        pressure = pressure - couette
     nothing = np.broadcast_to(np.nan, good.shape)
     return TabulatedFriction(
         boundary + couette + pressure,

@@ -2,31 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.lubrication.grid import LineGrid
-from skinbayes.lubrication.newton import LOAD, FilmState, Law, Solver, Transport
+from skinbayes.lubrication.newton import FilmState, Transport
 
-# lubrication numbers at which the contact is solved first, one after the other until one succeeds: neither stiff nor far from
-# Hertz; the active set may run in a circle from a guess far away
-_STARTS, _THICKER = (1.0, 2.0, 0.5, 5.0, 0.1), (1.0, 2.0, 4.0)
 _ROUNDS, _FIRST_ROUNDS = 25, 100
 _SMALLEST_STEP = 1e-3  # of ln λ
 
 
+class FilmSolver(Protocol):
+    """What a sweep asks of a solver of one film, be it that of a cylinder or of a ball."""
+
+    @property
+    def starts(self) -> tuple[float, ...]:
+        """Lubrication numbers at which a film is sought first, one after the other until there is one."""
+
+    def guess(self, number: float, thick: float) -> FilmState:
+        """A first guess for λ whose approach is about ``thick``."""
+
+    def __call__(
+        self, state: FilmState, number: float, transport: Transport, rounds: int
+    ) -> tuple[FilmState, int]:
+        """Film at the lubrication number λ, from a first guess; also the steps taken, −1 if it did not converge."""
+
+
 def sweep(
-    numbers: FloatArray, grid: LineGrid, law: Law, transport: Callable[[float], Transport], first_film: float
+    numbers: FloatArray,
+    solver: FilmSolver,
+    transport: Callable[[float], Transport],
+    first_approaches: Sequence[float],
 ) -> tuple[list[FilmState | None], int]:
     """Films at the lubrication numbers, in their order, None where none was found; and the Newton steps taken.
 
-    ``transport`` gives the film law at a lubrication number; ``first_film`` is a film thicker than the asperities.
+    ``transport`` gives the film law at a lubrication number; ``first_approaches`` are those of first guesses.
     """
-    solver = Solver(grid, law)
     found: list[FilmState | None] = [None] * numbers.size
-    first, steps = _first_film(solver, transport, first_film)
+    first, steps = _first_film(solver, transport, first_approaches)
     if first is None:
         return found, steps
     begin, start = first
@@ -44,17 +59,13 @@ def sweep(
 
 
 def _first_film(
-    solver: Solver, transport: Callable[[float], Transport], first_film: float
+    solver: FilmSolver, transport: Callable[[float], Transport], first_approaches: Sequence[float]
 ) -> tuple[tuple[float, FilmState] | None, int]:
     """A film to start from with its ln λ, from the pressure of Hertz and a thick film; and the steps taken."""
-    grid = solver.grid
-    hertz = np.sqrt(np.maximum(1 - np.square(grid.position), 0.0))
-    hertz *= LOAD / (grid.weight @ hertz)
     total = 0
-    for number in _STARTS:
-        for factor in _THICKER:
-            guess = FilmState(hertz, factor * first_film)
-            state, steps = solver(guess, number, transport(number), _FIRST_ROUNDS)
+    for number in solver.starts:
+        for approach in first_approaches:
+            state, steps = solver(solver.guess(number, approach), number, transport(number), _FIRST_ROUNDS)
             if steps > 0:
                 return (float(np.log(number)), state), total + steps
             total += _FIRST_ROUNDS
@@ -62,7 +73,10 @@ def _first_film(
 
 
 def _walk(
-    solver: Solver, trail: list[tuple[float, FilmState]], goal: float, transport: Callable[[float], Transport]
+    solver: FilmSolver,
+    trail: list[tuple[float, FilmState]],
+    goal: float,
+    transport: Callable[[float], Transport],
 ) -> tuple[bool, int]:
     """Extend the trail of (ln λ, film) to the goal, in smaller steps where Newton's iteration fails."""
     total, target = 0, goal

@@ -172,6 +172,8 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
     data, free = len(observed_values(fit)), len(fit.names)
     families = {str(family).replace("_", " ") for family in fit.provenance["noise"].values()}
     said = [f"Scatter of the data about the model: {' or '.join(sorted(families))} distribution."]
+    if options := fit.provenance.get("options"):
+        said.append(f"The theory was evaluated with {', '.join(f'{k} = {v}' for k, v in options.items())}.")
     if accuracy := str(fit.provenance.get("accuracy") or ""):
         said.append(f"{accuracy[:1].upper()}{accuracy[1:]}".removesuffix(".") + ".")
     if free > data:

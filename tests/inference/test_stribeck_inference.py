@@ -18,6 +18,9 @@ format = 1
 title = "A ball in two liquids"
 forward = "stribeck"
 
+[options]
+contact = "line"
+
 [data]
 file = "mine.csv"
 observable = "friction_coefficient"
@@ -190,6 +193,7 @@ def test_only_lubrication_has_a_use_for_flow_curves(tmp_path: Path) -> None:
     assert users == ["stribeck"]
     path = write(tmp_path)
     text = path.read_text(encoding="utf-8").replace('forward = "stribeck"', 'forward = "friction"')
+    text = text.replace('[options]\ncontact = "line"\n', "")
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match="no use for flow curves"):
         load_problem(path)

@@ -20,6 +20,8 @@ FEW = 40
 SMALL = """
 title = "A ball and four people"
 forward = "stribeck"
+[options]
+contact = "line"
 [data]
 file = "rows.csv"
 observable = "friction_coefficient"

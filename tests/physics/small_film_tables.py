@@ -3,10 +3,15 @@
 from functools import lru_cache
 
 import numpy as np
+from line_curves import FilmTablePlan
 from named_fields import surface_from
 
 from skinbayes.contact import LayeredSkin
-from skinbayes.lubrication import FILM_PARAMETERS, FilmTable, FilmTablePlan, build_film_table
+from skinbayes.lubrication import (
+    FILM_PARAMETERS,
+    FilmTable,
+    build_film_table,
+)
 from skinbayes.roughness import SelfAffineSpectrum, named_surface
 
 RANGES = {

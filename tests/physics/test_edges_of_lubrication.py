@@ -9,6 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from line_curves import FilmTablePlan, stribeck_curve, stribeck_curve_of_liquid
 
 from skinbayes.contact import (
     LayeredSkin,
@@ -21,7 +22,6 @@ from skinbayes.errors import InputError
 from skinbayes.friction import friction_coefficient
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
-    FilmTablePlan,
     FlowCurve,
     LubricatedBalls,
     PatirCheng,
@@ -32,8 +32,6 @@ from skinbayes.lubrication import (
     build_film_table,
     liquid_rows,
     lubricated_films,
-    stribeck_curve,
-    stribeck_curve_of_liquid,
     tabulated_friction,
     tabulated_friction_of_liquids,
     thinned_viscosity,

@@ -12,10 +12,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from line_curves import FilmTablePlan
 from small_film_tables import RANGES
 
 from skinbayes.emulation import Tasks, to_arrays
-from skinbayes.lubrication import FilmTable, FilmTablePlan, build_film_table
+from skinbayes.lubrication import (
+    FilmTable,
+    build_film_table,
+)
 from skinbayes.roughness import named_surface
 
 COUNTS = {"young_modulus_bulk": 2, "rms_height": 2, "normal_force": 2}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from line_curves import stribeck_curve_of_liquid
 from scipy.optimize import brentq
 from small_film_tables import draw, skin_of, small_table, spectrum_of
 
@@ -15,7 +16,6 @@ from skinbayes.lubrication import (
     asperity_law,
     liquid_rows,
     lubricated_films,
-    stribeck_curve_of_liquid,
     tabulated_friction,
     tabulated_friction_of_liquids,
 )

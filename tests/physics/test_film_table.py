@@ -5,6 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
+from line_curves import FilmTablePlan, stribeck_curve
 from small_film_tables import RANGES, draw, skin_of, small_table, spectrum_of
 
 from skinbayes.contact.line_contact import line_contact
@@ -12,12 +13,10 @@ from skinbayes.emulation import from_arrays, to_arrays
 from skinbayes.errors import InputError
 from skinbayes.lubrication import (
     FilmTable,
-    FilmTablePlan,
     LubricatedBalls,
     build_film_table,
     film_sweeps,
     lubricated_films,
-    stribeck_curve,
     tabulated_friction,
 )
 from skinbayes.lubrication.film import lubrication_number_per_product

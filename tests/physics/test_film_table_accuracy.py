@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
+from line_curves import FilmTablePlan, stribeck_curve
 from named_fields import skin_from, surface_from
 
 from skinbayes.contact import LayeredSkin
 from skinbayes.lubrication import (
     FILM_PARAMETERS,
-    FilmTablePlan,
     LubricatedBalls,
     build_film_table,
     film_axes,
-    stribeck_curve,
     tabulated_friction,
 )
 from skinbayes.lubrication.film_axes import range_logarithms

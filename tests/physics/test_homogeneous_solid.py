@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from line_curves import FilmTablePlan
 from scipy.special import erf
 
 from skinbayes.contact import (
@@ -17,7 +18,11 @@ from skinbayes.contact import (
 )
 from skinbayes.emulation import Box
 from skinbayes.errors import InputError
-from skinbayes.lubrication import FilmTablePlan, LubricatedBalls, build_film_table, tabulated_friction
+from skinbayes.lubrication import (
+    LubricatedBalls,
+    build_film_table,
+    tabulated_friction,
+)
 from skinbayes.roughness import SelfAffineSpectrum, named_surface, rms_slope
 from skinbayes.wetting import bridge_table, film_contact, humid_groups, humid_table, skin_groups
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from line_curves import stribeck_curve
 from named_fields import surface_from
 from scipy.interpolate import CubicSpline
 
@@ -12,7 +13,6 @@ from skinbayes.lubrication import (
     PatirCheng,
     ShearThinning,
     lubricated_films,
-    stribeck_curve,
     tabulated_flow_factors,
 )
 from skinbayes.roughness import SelfAffineSpectrum, named_surface

@@ -1,0 +1,157 @@
+"""What makes a table of films under a cylinder one of films under the ball itself: smooth films, and a smooth correction."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from skinbayes.arrays import FloatArray
+from skinbayes.contact.hertz import sphere_contact
+from skinbayes.emulation.chebyshev import grid_coefficients, zeros
+from skinbayes.lubrication._uniform_spline import spline_coefficients
+from skinbayes.lubrication.film_axes import unit_contact
+from skinbayes.lubrication.film_reference import HIGHEST, LOWEST, STEP, SmoothFilms
+from skinbayes.lubrication.film_table import BOUNDARY, COUETTE, FRACTION, PRESSURE_FLOW, REFERENCE
+from skinbayes.lubrication.point_drag import point_drag_integrals
+from skinbayes.lubrication.point_film import point_sweeps
+from skinbayes.lubrication.transport import no_asperities, transport_of
+
+TERMS = 6
+"""Polynomials of the end of the drag."""
+
+_SKIPPED = 12  # of the slowest speeds of a smooth cylinder: thinner than cells resolve; each output is a power of λ there
+_CELLS = 500
+_STEPS = 8  # of Newton's iteration for a speed
+_LEAST_ODDS = 1e-12  # of the load that the liquid carries
+
+
+def log_end(strain: FloatArray) -> FloatArray:
+    """ln of the radius at which the drag of a ball ends over that of its contact, for ln b/Rc of its cylinder."""
+    hertz = sphere_contact(1.0, 1.0, reduced_modulus=1.0)
+    half_width, cylinder = unit_contact(0.0)
+    # unit_contact has E* = 1 for ν = 0; both a/R and b/Rc go as (F/(E* R²))^(1/3)
+    slope = strain + (np.log(float(hertz.contact_radius)) - half_width + cylinder)
+    return np.asarray(np.logaddexp(0.0, -4 * slope) / 4)
+
+
+def log_number_ratio() -> float:
+    """ln of λ of a ball over that of its cylinder, whatever the ball."""
+    hertz = sphere_contact(1.0, 1.0, reduced_modulus=1.0)
+    half_width, cylinder = unit_contact(0.0)
+    line = np.log(12.0) + 3 * cylinder - 4 * half_width
+    return float(np.log(6 / (hertz.contact_radius**3 * hertz.maximum_pressure)) - line)
+
+
+def smooth_point_films(low: float, high: float) -> SmoothFilms:
+    """Films under a smooth ball in the units of its cylinder; ln of the end of the drag is from ``low`` to ``high``."""
+    log_number = LOWEST + STEP * np.arange(_SKIPPED, round((HIGHEST - LOWEST) / STEP) + 1)
+    number = np.exp(log_number + log_number_ratio())
+    hertz = sphere_contact(1.0, 1.0, reduced_modulus=1.0)
+    half_width, cylinder = (float(np.exp(x)) for x in unit_contact(0.0))
+    slope, line_slope = float(hertz.contact_radius), half_width / cylinder
+    height = slope**2 / (half_width**2 / cylinder)
+    ends = np.exp(low + (high - low) * (zeros(TERMS) + 1) / 2)
+    found = np.empty((2 + 2 * TERMS, number.size))
+    smooth = transport_of(None, None, 1.0, 1.0)
+    sweeps = point_sweeps(
+        number, number > 0, no_asperities, smooth, rough=0.0, tail=0.0, end=float(ends.max()), cells=_CELLS
+    )
+    for rows, grid, film, pressure in sweeps:
+        found[0, rows] = film[:, : grid.rays].mean(axis=1) * height
+        found[-1, rows] = film.min(axis=1) * height
+        for place, end in enumerate(ends.tolist()):
+            drag = point_drag_integrals(grid, film, pressure, number[rows], end=end, height=1.0)
+            couette = number[rows] * slope / (4 * np.pi) * drag.couette
+            whole = couette + 3 * slope / (4 * np.pi) * drag.pressure_flow
+            found[1 + place, rows] = couette * 3 * np.pi / line_slope / np.exp(log_number[rows])
+            found[1 + TERMS + place, rows] = whole * np.pi / line_slope
+    logs = np.log(found)
+    for first in (1, 1 + TERMS):
+        logs[first : first + TERMS] = grid_coefficients(logs[first : first + TERMS], ends=False)
+    return SmoothFilms(spline_coefficients(logs), float(log_number[0]), STEP)
+
+
+def end_coordinate(log_ends: FloatArray, low: float, high: float) -> FloatArray:
+    """ln of the end of the drag, −1 … 1 between ``low`` and ``high``."""
+    return np.asarray((2 * log_ends - low - high) / (high - low))
+
+
+def relative_outputs(
+    outputs: FloatArray, log_number: FloatArray, smooth: SmoothFilms, end: FloatArray | None = None
+) -> FloatArray:
+    """Outputs of shape ``(M, 6, S)`` over those of the smooth ball, but for the boundary term and the load fraction."""
+    found = outputs.copy()
+    parts = smooth(log_number, range(4), end=None if end is None else end[:, None])
+    for output, reference in REFERENCE.items():
+        found[:, output] -= parts[reference]
+    return found
+
+
+def whole_drag(outputs: FloatArray, log_number: FloatArray) -> FloatArray:
+    """Outputs of cylinders, shape ``(M, 6, S)``, with the whole drag of the liquid in place of its pressure flow."""
+    found = outputs.copy()
+    couette = log_number + outputs[:, COUETTE] - np.log(3.0)
+    found[:, PRESSURE_FLOW] = np.logaddexp(outputs[:, PRESSURE_FLOW], couette)
+    return found
+
+
+def correction(point: FloatArray, line: FloatArray, speeds: FloatArray, places: FloatArray) -> FloatArray:
+    """What a ball has beyond its cylinder, shape ``(M, 6, K)``; smooth in everything.
+
+    Asperities carry under the ball what they carry under its cylinder at a lower speed. The load fraction is compared by
+    the speed, because it falls by many powers of ten, and the boundary term by its ratio to the load fraction at the speeds
+    that belong together, which is the same wherever A ∝ p.
+
+    Parameters
+    ----------
+    point : relative outputs of M balls, shape ``(M, 6, K)``
+    line : those of their cylinders, at all speeds of a table, shape ``(M, 6, S)``
+    speeds : K speeds, in the unit of the material, dimensionless
+    places : S speeds, likewise, rising
+    """
+    found = point - line[:, :, np.searchsorted(places, speeds - 1e-9)]
+    for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
+        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))
+        lower = odds.place_of(log_odds(of_ball[FRACTION]))
+        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])
+        found[row, FRACTION] = speeds - lower
+        found[row, BOUNDARY] = of_ball[BOUNDARY] - of_ball[FRACTION] - ratio(lower)
+    return found
+
+
+def corrected(line: FloatArray, addition: FloatArray, places: FloatArray) -> FloatArray:
+    """Relative outputs of balls, shape ``(M, 6, S)``, from those of their cylinders and the `correction` at the S speeds."""
+    found = line + addition
+    for row, of_cylinder in enumerate(line):
+        lower = places - addition[row, FRACTION]
+        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))(lower)
+        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])(lower)
+        found[row, FRACTION] = -np.logaddexp(0.0, -odds)
+        found[row, BOUNDARY] = found[row, FRACTION] + ratio + addition[row, BOUNDARY]
+    return found
+
+
+class _Continued:
+    """A cubic spline through values at places, and straight on at both ends."""
+
+    def __init__(self, places: FloatArray, values: FloatArray) -> None:
+        self._spline = CubicSpline(places, values)
+        self._slope = self._spline.derivative()
+        self._ends, self._points = places[[0, -1]], (places, values)
+
+    def __call__(self, place: FloatArray) -> FloatArray:
+        held = np.clip(place, *self._ends)
+        return np.asarray(self._spline(held) + self._slope(held) * (place - held))
+
+    def place_of(self, values: FloatArray) -> FloatArray:
+        """Where a falling function has given values: Newton steps from straight lines between the points."""
+        places, points = self._points
+        place = np.interp(-values, -points, places)
+        for _ in range(_STEPS):
+            place = place - (self(place) - values) / self._slope(np.clip(place, *self._ends))
+        return place
+
+
+def log_odds(log_fraction: FloatArray) -> FloatArray:
+    """ln f/(1 − f) of ln f."""
+    return np.asarray(log_fraction - np.log(np.maximum(-np.expm1(log_fraction), _LEAST_ODDS)))
