@@ -8,6 +8,7 @@ equation with the mean speed v/2 of the two surfaces, ``d/dx[φ_p u³/(12η) dp/
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np

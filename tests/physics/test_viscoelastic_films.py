@@ -126,11 +126,11 @@ def test_curve_of_elastic_skin_is_that_of_elastic_skin() -> None:
     speed, viscosity = np.array([1e-3, 0.02, 0.02, 0.5, 5.0]), np.array([0.01, 0.1, 1.0, 0.1, 1.0])
     found = viscoelastic_stribeck_curve(speed, viscosity, skin=skin, **case)
     for rows in ([0], [1, 2], [3]):  # points of one speed share their nodes
-        expected = stribeck_curve(speed[rows] * viscosity[rows], skin=WET, **case)
+        expected = stribeck_curve(speed[rows] * viscosity[rows], skin=WET, contact="line", **case)
         for name in ("friction_coefficient", "boundary", "couette", "central_film", "strain"):
             np.testing.assert_allclose(getattr(found, name)[rows], getattr(expected, name), rtol=1e-9)
     assert (found.film_beyond_ball == [False, False, False, False, True]).all()
-    assert found.reasons() == stribeck_curve(speed * viscosity, skin=WET, **case).reasons()
+    assert found.reasons() == stribeck_curve(speed * viscosity, skin=WET, contact="line", **case).reasons()
     # with loss, friction is no function of ηv alone, and the parts add up
     lossy = ViscoelasticSkin(layer=skin.layer, bulk=ZENER, layer_thickness=20e-6)
     pair = viscoelastic_stribeck_curve([0.01, 1.0, -1.0], [1.0, 0.01, 1.0], skin=lossy, **case)
