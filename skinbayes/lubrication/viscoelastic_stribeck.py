@@ -62,9 +62,10 @@ def viscoelastic_stribeck_curve(
 ) -> ViscoelasticStribeckCurve:
     """Friction coefficient of a ball on lubricated, rough, viscoelastic skin (Sect. 6.2 and Fig. 14 of the paper).
 
-    `stribeck_curve` with ``contact="line"`` and the films of `viscoelastic_films`: the cylinder of Eq. 9, not the ball. The contact as a whole is that of the tissue: its modulus at v/b
-    makes the cylinder of Eq. 9, its memory the shape of the film. Layer and tissue together, at the same frequency, make the
-    asperities: the roughness rests in the skin, and is loaded once while it passes the contact.
+    `stribeck_curve` with ``contact="line"`` and the films of `viscoelastic_films`: the cylinder of Eq. 9, not the ball. The
+    contact as a whole is that of the tissue: its modulus at v/b makes the cylinder, its memory the shape of the film. Layer and
+    tissue together, at the same frequency, make the asperities: the roughness rests in the skin, and is loaded once while it
+    passes the contact.
 
     Parameters
     ----------
