@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.version import __version__
 
-__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "NoiseFamily", "Problem", "Quantity", "__version__", "build_problem",
-           "compare", "emulated", "load_dataset", "load_fit", "load_problem", "register_engine", "register_forward_model",
+__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointProblem", "NoiseFamily", "Problem", "Quantity",
+           "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "load_dataset", "load_fit",
+           "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
            "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
@@ -26,7 +27,14 @@ if TYPE_CHECKING:
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.fit import Fit, load_fit, sample
     from skinbayes.forward import ForwardModel, emulated, register_forward_model
-    from skinbayes.problem import Problem, build_problem, load_problem
+    from skinbayes.problem import (
+        JointProblem,
+        Problem,
+        build_joint_problem,
+        build_problem,
+        load_joint_problem,
+        load_problem,
+    )
     from skinbayes.sampling import register_engine
     from skinbayes.statistics import NoiseFamily, register_noise
     from skinbayes.vocabulary import Quantity, register_quantity
@@ -36,7 +44,10 @@ _HOME = {
     "Fit": "skinbayes.fit",
     "ForwardModel": "skinbayes.forward",
     "InputError": "skinbayes.errors",
+    "JointProblem": "skinbayes.problem",
     "Problem": "skinbayes.problem",
+    "build_joint_problem": "skinbayes.problem",
+    "load_joint_problem": "skinbayes.problem",
     "build_problem": "skinbayes.problem",
     "compare": "skinbayes.comparison",
     "emulated": "skinbayes.forward",

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.files.parameter_block import ParameterSpec
@@ -13,12 +16,18 @@ from skinbayes.problem.batches import as_batch, unbatch
 from skinbayes.problem.failures import impossible
 from skinbayes.statistics.densities import LogDensity, LogLikelihood
 
+if TYPE_CHECKING:
+    from skinbayes.files.joint_model import JointSpec
+    from skinbayes.files.modelfile import ModelSpec
+    from skinbayes.problem.statistical_model import StatisticalModel
+
 
 class Posterior:
     """Free parameters with their priors, and the likelihood of data.
 
     Attributes
     ----------
+    spec : the model file
     free, fixed, tied : parameters with a prior, with a value, and that are multiples of others
 
     Examples
@@ -33,6 +42,7 @@ class Posterior:
     4
     """
 
+    spec: ModelSpec | JointSpec
     free: tuple[ParameterSpec, ...]
     fixed: tuple[ParameterSpec, ...]
     tied: tuple[ParameterSpec, ...]
@@ -51,6 +61,16 @@ class Posterior:
     def dimension(self) -> int:
         """Number of free parameters D."""
         return len(self.free)
+
+    @property
+    @abstractmethod
+    def fingerprint(self) -> str:
+        """Digest of everything the posterior depends on; a run is only continued where it is the same."""
+
+    @property
+    @abstractmethod
+    def parts(self) -> Mapping[str, tuple[StatisticalModel, NDArray[np.intp]]]:
+        """The models of single experiments, and which of the free parameters each has; by the name of the experiment."""
 
     @abstractmethod
     def data_likelihood(self) -> LogLikelihood:

@@ -48,6 +48,11 @@ class StatisticalModel(PredictingModel):
         """Digest of the data alone; models are compared where it is the same."""
         return digest_data(self.dataset, self.observations)
 
+    @property
+    def parts(self) -> dict[str, tuple[StatisticalModel, NDArray[np.intp]]]:
+        """Itself, under no name, with all of its parameters."""
+        return {"": (self, np.arange(self.dimension))}
+
     # -- densities ---------------------------------------------------------------------------------------------------
 
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
