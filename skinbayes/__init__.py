@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.version import __version__
 
-__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointProblem", "NoiseFamily", "Problem", "Quantity",
+__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
            "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "load_dataset", "load_fit",
-           "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
+           "load_joint_fit", "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
            "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
-    from skinbayes.fit import Fit, load_fit, sample
+    from skinbayes.fit import Fit, JointFit, load_fit, load_joint_fit, sample
     from skinbayes.forward import ForwardModel, emulated, register_forward_model
     from skinbayes.problem import (
         JointProblem,
@@ -44,7 +44,9 @@ _HOME = {
     "Fit": "skinbayes.fit",
     "ForwardModel": "skinbayes.forward",
     "InputError": "skinbayes.errors",
+    "JointFit": "skinbayes.fit",
     "JointProblem": "skinbayes.problem",
+    "load_joint_fit": "skinbayes.fit",
     "Problem": "skinbayes.problem",
     "build_joint_problem": "skinbayes.problem",
     "load_joint_problem": "skinbayes.problem",

@@ -51,6 +51,11 @@ class JointSpec:
         """Names of the parameters that are the same in all experiments."""
         return frozenset(p.name for p in self.parameters if p.by != EXPERIMENT)
 
+    @property
+    def baseline_models(self) -> tuple[str, ...]:
+        """None: baseline models explain the data of one experiment."""
+        return ()
+
 
 def is_joint(name: str | Path) -> bool:
     """Whether a model file is one of several experiments; raises what reading it raises."""

@@ -56,7 +56,7 @@ def build_joint_problem(
     ...     {
     ...         "press": {
     ...             "forward": "indentation",
-    ...             "data": {"indentation_depth [mm]": [0.2, 0.4], "sphere_radius [mm]": [2, 2], "indentation_force [mN]": [4, 11]},
+    ...             "data": {"indentation_depth": [2e-4, 4e-4], "sphere_radius": [2e-3, 2e-3], "indentation_force": [4e-3, 0.01]},
     ...             "noise": {"family": "lognormal", "noise_scale": 0.1},
     ...         },
     ...         "slide": {

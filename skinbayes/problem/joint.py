@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -43,6 +43,7 @@ class JointProblem(Posterior):
     experiments : the problem of each experiment by name
     free, fixed, tied : parameters of all experiments; what is not shared is ``name[experiment]``
     places : which of the free parameters each experiment has, in its order
+    settings : values set over the model file, as given
 
     Examples
     --------
@@ -68,6 +69,7 @@ class JointProblem(Posterior):
     fixed: tuple[ParameterSpec, ...]
     tied: tuple[ParameterSpec, ...]
     places: Mapping[str, NDArray[np.intp]]
+    settings: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return joint_summary(self)
@@ -359,13 +361,16 @@ class JointProblem(Posterior):
         return total
 
 
-def joint_problem(spec: JointSpec, experiments: Mapping[str, Problem]) -> JointProblem:
+def joint_problem(
+    spec: JointSpec, experiments: Mapping[str, Problem], settings: Mapping[str, str] | None = None
+) -> JointProblem:
     """Put the problems of several experiments together: what they share comes first, then what each has of its own.
 
     Parameters
     ----------
     spec : what they share
     experiments : the problem of each experiment by name
+    settings : values set over the model file
     """
     shared = spec.shared
 
@@ -390,7 +395,9 @@ def joint_problem(spec: JointSpec, experiments: Mapping[str, Problem]) -> JointP
         for name, problem in experiments.items()
     }
     fixed, tied = tuple(all_of("fixed").values()), tuple(all_of("tied").values())
-    return JointProblem(spec, dict(experiments), tuple(free.values()), fixed, tied, places)
+    return JointProblem(
+        spec, dict(experiments), tuple(free.values()), fixed, tied, places, dict(settings or {})
+    )
 
 
 def _own(label: str, experiment: str) -> str:

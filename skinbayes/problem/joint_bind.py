@@ -86,7 +86,7 @@ def bind_joint(
             if not str(error).startswith(place):
                 raise
             raise InputError(f"{place}{EXPERIMENTS}.{name}: {str(error).removeprefix(place)}") from None
-    return joint_problem(spec, bound)
+    return joint_problem(spec, bound, settings)
 
 
 def _check_taken(spec: JointSpec, forwards: Mapping[str, ForwardModel]) -> None:

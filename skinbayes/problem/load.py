@@ -67,6 +67,17 @@ def load_problem(
     return bind(_of_other_data(spec, dataset), dataset, settings=settings, other_data=True)
 
 
+def load_any_problem(
+    name: str | Path,
+    data: Data | Mapping[str, Data] | None = None,
+    settings: Mapping[str, str] | None = None,
+) -> Problem | JointProblem:
+    """Bind a model file of one experiment or of several."""
+    if is_joint(name):
+        return load_joint_problem(name, data, settings)  # type: ignore[arg-type]  # which refuses other data in words
+    return load_problem(name, data, settings)
+
+
 def load_joint_problem(
     name: str | Path, data: Mapping[str, Data] | None = None, settings: Mapping[str, str] | None = None
 ) -> JointProblem:
