@@ -102,7 +102,8 @@ def load_joint_fit(path: str | Path) -> JointFit:
     >>> import pathlib, tempfile
     >>> import numpy as np
     >>> import skinbayes as sb
-    >>> one = {"forward": "constant", "noise": {"family": "gaussian", "noise_scale": 0.1}, "data": {"friction_coefficient": [0.4]}}
+    >>> noise = {"family": "gaussian", "noise_scale": 0.1}
+    >>> one = {"forward": "constant", "noise": noise, "data": {"friction_coefficient": [0.4]}}
     >>> problem = sb.build_joint_problem(
     ...     {"left": one, "right": one}, parameters={"typical_friction_coefficient": {"uniform": [0, 2]}}
     ... )

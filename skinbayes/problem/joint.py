@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,8 @@ from skinbayes.problem.problem import Problem
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.problem.target import PosteriorTarget
 from skinbayes.statistics.densities import LogLikelihood
+
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 @dataclass(frozen=True, repr=False)
@@ -406,7 +409,7 @@ def _own(label: str, experiment: str) -> str:
     return f"{name}[{experiment}, {level}]" if level else f"{name}[{experiment}]"
 
 
-def split(problem: JointProblem, values: NDArray[np.generic]) -> dict[str, NDArray[np.generic]]:
+def split(problem: JointProblem, values: NDArray[Scalar]) -> dict[str, NDArray[Scalar]]:
     """What stands datum by datum along the last axis, for each experiment."""
-    ends: Sequence[int] = np.cumsum(list(problem.counts().values()))[:-1].tolist()
+    ends = np.cumsum(list(problem.counts().values()))[:-1]
     return dict(zip(problem.experiments, np.split(values, ends, axis=-1), strict=True))
