@@ -9,7 +9,7 @@ from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     from skinbayes.comparison import AgainstBaselines
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 
 MARK = b'<meta name="generator" content="skinbayes">'
@@ -31,7 +31,7 @@ def refuse_other_files(page: Path) -> None:
 
 
 def write_page(
-    fit: Fit, page: Path, run: Path | None, with_baselines: bool = True
+    fit: Fit | JointFit, page: Path, run: Path | None, with_baselines: bool = True
 ) -> AgainstBaselines | None:
     """Write the page of a fit; models without theory that its model file names are fitted before, unless that was done.
 
@@ -54,11 +54,12 @@ def write_page(
     """
     from skinbayes.cli.progress import named_progress
     from skinbayes.comparison import against_baselines
+    from skinbayes.fit import Fit
     from skinbayes.report import write_report
 
     refuse_other_files(page)
     baseline_models = None
-    if with_baselines and fit.problem is not None and fit.problem.spec.baseline_models:
+    if with_baselines and isinstance(fit, Fit) and fit.problem and fit.problem.spec.baseline_models:
         with named_progress("baseline model") as progress:
             baseline_models = against_baselines(fit, run, progress)
     write_report(fit, page, baseline_models)

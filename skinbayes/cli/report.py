@@ -27,10 +27,11 @@ def report(run: str, output: str | None, no_baselines: bool, as_json: bool) -> N
     The page is one file that needs no other, figures included.
     """
     from skinbayes.cli.page import write_page
-    from skinbayes.fit import load_fit
-    from skinbayes.report import digest
+    from skinbayes.fit.joint_fit import JointFit
+    from skinbayes.fit.storage import load_any_fit
+    from skinbayes.report import digest, joint_digest
 
-    fit, place = load_fit(run), Path(run)
+    fit, place = load_any_fit(run), Path(run)
     page = Path(output) if output else place / "report.html" if place.is_dir() else place.with_suffix(".html")
     baseline_models = write_page(fit, page, place if place.is_dir() else None, not no_baselines)
     if as_json:
@@ -39,7 +40,7 @@ def report(run: str, output: str | None, no_baselines: bool, as_json: bool) -> N
                 "run": run,
                 "report": str(page),
                 "converged": fit.converged,
-                **digest(fit),
+                **(joint_digest(fit) if isinstance(fit, JointFit) else digest(fit)),
                 "baseline_models": None if baseline_models is None else baseline_models.to_dict(),
             }
         )

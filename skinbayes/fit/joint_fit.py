@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +16,7 @@ from skinbayes.fit.netcdf import result_image
 from skinbayes.fit.result import PosteriorResult
 
 if TYPE_CHECKING:
+    from skinbayes.fit.prior_sensitivity import PriorSensitivity
     from skinbayes.problem import JointProblem
 
 
@@ -61,6 +63,40 @@ class JointFit(PosteriorResult):
             )
             for name in self.provenance["experiments"]
         }
+
+    @property
+    def together(self) -> Fit:
+        """The parameters of all experiments as a fit without a problem, for whatever asks about parameters alone."""
+        return Fit(self.groups, self.provenance, None)
+
+    def prior_sensitivity(
+        self, refit: bool = False, progress: Callable[[int, int], None] | None = None
+    ) -> PriorSensitivity:
+        """What evidence and posterior owe to the priors, see :meth:`Fit.prior_sensitivity`.
+
+        Parameters
+        ----------
+        refit : sample the experiments anew with the other priors where weights cannot tell
+        progress : called with the number of changed priors done and their total
+
+        Returns
+        -------
+        PriorSensitivity
+            As of a :class:`Fit`.
+
+        Raises
+        ------
+        InputError
+            Model or data of the fit are not at hand any more.
+
+        Examples
+        --------
+        >>> fit.prior_sensitivity().of(["typical_friction_coefficient"], 2.0).factor
+        2.0
+        """
+        from skinbayes.fit.prior_sensitivity import prior_sensitivity
+
+        return prior_sensitivity(self, refit, progress)
 
     @classmethod
     def from_draws(

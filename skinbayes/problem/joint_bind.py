@@ -61,9 +61,7 @@ def bind_joint(
     bound = {}
     for name, one in spec.experiments.items():
         forward = known[name]
-        alone = replace(one, parameters=_of_experiment(spec, forward, name))
-        if forward.uses_surface:
-            alone = replace(alone, surface_name=spec.surface_name, surface_file=spec.surface_file)
+        alone = experiment_of(spec, name, forward)
         if name not in given and one.dataset is None:
             raise InputError(
                 f"{spec.path}: {EXPERIMENTS}.{name} explains data that you bring: give them with --data {name}=FILE.csv "
@@ -150,8 +148,14 @@ def _settable(forward: ForwardModel) -> Collection[str]:
     return {*forward.input_names(), *forward.options, *surface}
 
 
-def experiment_of(spec: JointSpec, name: str) -> ModelSpec:
-    """One experiment as a model of its own, with the parameters that it takes."""
+def experiment_of(spec: JointSpec, name: str, forward: ForwardModel | None = None) -> ModelSpec:
+    """One experiment as a model of its own, with the parameters and the surface that it takes."""
     one = spec.experiments[name]
-    forward = forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
-    return replace(one, parameters=_of_experiment(spec, forward, name))
+    forward = forward or forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
+    surface = (spec.surface_name, spec.surface_file) if forward.uses_surface else (None, None)
+    return replace(
+        one,
+        parameters=_of_experiment(spec, forward, name),
+        surface_name=surface[0],
+        surface_file=surface[1],
+    )

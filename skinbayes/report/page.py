@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import cannot_write
+from skinbayes.fit.joint_fit import JointFit
 from skinbayes.plot.predictive import observed_values
 from skinbayes.report import opening, quality, sentences, tables
 from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
+from skinbayes.report.joint_page import joint_context
 from skinbayes.report.markup import links, symbols
 from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.sensitivity import EXPLAINED, HEADERS, page_sensitivity
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from skinbayes.problem.check import CheckReport
 
 
-def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None = None) -> Path:
+def write_report(fit: Fit | JointFit, path: Path, baseline_models: AgainstBaselines | None = None) -> Path:
     """Write one self-contained HTML page about a fit.
 
     Figures are inside the page; nothing is loaded from anywhere and no script runs. Everything that comes from data
@@ -31,7 +33,8 @@ def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None 
 
     Parameters
     ----------
-    fit : any fit; without its problem the page has neither the curves of the model nor the check of what data can tell
+    fit : any fit, of one experiment or several; without its problem the page has neither the curves of the model nor the check
+        of what data can tell
     path : the file to write
     baseline_models : the fit beside its baseline models, from :func:`skinbayes.comparison.against_baselines`, if there are any
 
@@ -56,7 +59,7 @@ def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None 
     return path
 
 
-def render(fit: Fit, baseline_models: AgainstBaselines | None = None) -> str:
+def render(fit: Fit | JointFit, baseline_models: AgainstBaselines | None = None) -> str:
     """The page as text."""
     import jinja2
 
@@ -73,6 +76,8 @@ def render(fit: Fit, baseline_models: AgainstBaselines | None = None) -> str:
         "symbols": lambda text: safe(symbols(text)),
         "links": lambda text: safe(links(text)),
     }
+    if isinstance(fit, JointFit):
+        return environment.get_template("joint.html").render(joint_context(fit))
     return environment.get_template("page.html").render(context(fit, baseline_models))
 
 
