@@ -157,5 +157,5 @@ def _document(result: Fit | JointFit, directory: Path, page: Path | None) -> dic
         "steps": sampling.get("steps"),
         "seconds": result.provenance["seconds"]["total"],
         "report": page and str(page),
-        **(joint_digest(result) if isinstance(result, JointFit) else digest(result)),
+        **(joint_digest(result, result.left_out()) if isinstance(result, JointFit) else digest(result)),
     }

@@ -26,7 +26,9 @@ def print_fit(result: Fit | JointFit, directory: Path, page: Path | None) -> Non
     rows, crowded = _rows(result)
     headers = ("parameter", "median", "5 %", "95 %", *_convergence(result))
     print_table(headers, rows, title=title, right=tuple(range(1, len(headers))))
-    print_sentences(joint_remarks(result) if isinstance(result, JointFit) else remarks(result))
+    print_sentences(
+        joint_remarks(result, result.left_out()) if isinstance(result, JointFit) else remarks(result)
+    )
     if crowded:
         say(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
     say(f"run: {directory}" + (f"\nreport: {page}" if page else f"\nreport: skinbayes report {directory}"))

@@ -16,6 +16,7 @@ from skinbayes.fit.netcdf import result_image
 from skinbayes.fit.result import PosteriorResult
 
 if TYPE_CHECKING:
+    from skinbayes.fit.left_out import LeftOutExperiment
     from skinbayes.fit.prior_sensitivity import PriorSensitivity
     from skinbayes.problem import JointProblem
 
@@ -68,6 +69,28 @@ class JointFit(PosteriorResult):
     def together(self) -> Fit:
         """The parameters of all experiments as a fit without a problem, for whatever asks about parameters alone."""
         return Fit(self.groups, self.provenance, None)
+
+    def left_out(self, refit: bool = False) -> list[LeftOutExperiment]:
+        """Whether the experiments agree: what all others say without each of them about the parameters that it shares.
+
+        Parameters
+        ----------
+        refit : sample without an experiment where the draws cannot tell: as long as a fit, for each
+
+        Returns
+        -------
+        list of LeftOutExperiment
+            One for each experiment: ln p(its data | those of the others), quantiles of the shared parameters without and with
+            it, and the ``pulls``: parameters whose median it takes out of the 90 % interval that they had without it.
+
+        Examples
+        --------
+        >>> [one.experiment for one in fit.left_out()]
+        ['left', 'right']
+        """
+        from skinbayes.fit.left_out import left_out_experiments
+
+        return left_out_experiments(self, refit)
 
     def prior_sensitivity(
         self, refit: bool = False, progress: Callable[[int, int], None] | None = None

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.phrases import and_list
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import opening, quality, sentences, tables
-from skinbayes.report.agreement import agreement_sentences, left_out_experiments
+from skinbayes.report.agreement import agreement_sentences
 from skinbayes.report.digest import digest
 from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.drawings import TRACE, drawings, sampled
@@ -19,12 +20,13 @@ from skinbayes.report.validity import validity_sentences
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit, JointFit
+    from skinbayes.fit.left_out import LeftOutExperiment
 
 OF_ALL = {*(drawing.key for drawing in sampled()), TRACE.key}
 """Figures of parameters, which are drawn once."""
 
 
-def joint_context(fit: JointFit) -> dict[str, Any]:
+def joint_context(fit: JointFit, left_out: Sequence[LeftOutExperiment]) -> dict[str, Any]:
     """Everything the template shows, as text."""
     from skinbayes.report.page import data_origin
 
@@ -43,7 +45,7 @@ def joint_context(fit: JointFit) -> dict[str, Any]:
         "misfit": any(quality.misfit(one) for one in fit.experiments.values()),
         "sampling": quality.sampling(whole),
         "missing": [sentences.with_symbols(whole, sentence) for sentence in quality.missing(whole)],
-        "agreement": agreement_sentences(fit),
+        "agreement": agreement_sentences(fit, left_out),
         "learnt": sentences.learnt(whole),
         "not_learnt": sentences.not_learnt(whole),
         "disagreements": sentences.disagreements(whole),
@@ -97,7 +99,7 @@ def _experiment(name: str, fit: Fit) -> dict[str, Any]:
     }
 
 
-def joint_digest(fit: JointFit) -> dict[str, Any]:
+def joint_digest(fit: JointFit, left_out: Sequence[LeftOutExperiment]) -> dict[str, Any]:
     """What the page says, for machines: of the parameters of all, of the agreement, and under ``experiments`` of each."""
     whole = fit.together
     return {
@@ -111,7 +113,7 @@ def joint_digest(fit: JointFit) -> dict[str, Any]:
             }
             for label, update in fit_updates(whole).items()
         },
-        "agreement": {one.experiment: one.to_dict() for one in left_out_experiments(fit)},
+        "agreement": {one.experiment: one.to_dict() for one in left_out},
         "experiments": {
             name: {
                 key: value
@@ -123,7 +125,7 @@ def joint_digest(fit: JointFit) -> dict[str, Any]:
     }
 
 
-def joint_remarks(fit: JointFit) -> list[str]:
+def joint_remarks(fit: JointFit, left_out: Sequence[LeftOutExperiment]) -> list[str]:
     """Whether the models fit and the experiments agree, about what only the prior speaks, and how sampling went."""
     whole = fit.together
     silent = [
@@ -133,7 +135,7 @@ def joint_remarks(fit: JointFit) -> list[str]:
     ]
     return [
         *(f"{name}: {' '.join(quality.verdict(one))}" for name, one in fit.experiments.items()),
-        *agreement_sentences(fit),
+        *agreement_sentences(fit, left_out),
         *sentences.disagreements(whole),
         *([f"Only the prior speaks about {and_list(silent)}."] if silent else []),
         str(fit.provenance["sampling"]["verdict"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,10 +23,16 @@ from skinbayes.report.validity import validity_sentences
 if TYPE_CHECKING:
     from skinbayes.comparison import AgainstBaselines
     from skinbayes.fit import Fit
+    from skinbayes.fit.left_out import LeftOutExperiment
     from skinbayes.problem.check import CheckReport
 
 
-def write_report(fit: Fit | JointFit, path: Path, baseline_models: AgainstBaselines | None = None) -> Path:
+def write_report(
+    fit: Fit | JointFit,
+    path: Path,
+    baseline_models: AgainstBaselines | None = None,
+    left_out: Sequence[LeftOutExperiment] | None = None,
+) -> Path:
     """Write one self-contained HTML page about a fit.
 
     Figures are inside the page; nothing is loaded from anywhere and no script runs. Everything that comes from data
@@ -37,6 +44,7 @@ def write_report(fit: Fit | JointFit, path: Path, baseline_models: AgainstBaseli
         of what data can tell
     path : the file to write
     baseline_models : the fit beside its baseline models, from :func:`skinbayes.comparison.against_baselines`, if there are any
+    left_out : of several experiments, what :meth:`skinbayes.JointFit.left_out` found; from weights alone if omitted
 
     Returns
     -------
@@ -51,7 +59,7 @@ def write_report(fit: Fit | JointFit, path: Path, baseline_models: AgainstBaseli
         The disk is full.
     """
     path = Path(path)
-    page = render(fit, baseline_models)
+    page = render(fit, baseline_models, left_out)
     try:
         write_atomically(path, page.encode())
     except OSError as error:
@@ -59,7 +67,11 @@ def write_report(fit: Fit | JointFit, path: Path, baseline_models: AgainstBaseli
     return path
 
 
-def render(fit: Fit | JointFit, baseline_models: AgainstBaselines | None = None) -> str:
+def render(
+    fit: Fit | JointFit,
+    baseline_models: AgainstBaselines | None = None,
+    left_out: Sequence[LeftOutExperiment] | None = None,
+) -> str:
     """The page as text."""
     import jinja2
 
@@ -77,7 +89,9 @@ def render(fit: Fit | JointFit, baseline_models: AgainstBaselines | None = None)
         "links": lambda text: safe(links(text)),
     }
     if isinstance(fit, JointFit):
-        return environment.get_template("joint.html").render(joint_context(fit))
+        return environment.get_template("joint.html").render(
+            joint_context(fit, fit.left_out() if left_out is None else left_out)
+        )
     return environment.get_template("page.html").render(context(fit, baseline_models))
 
 
