@@ -44,7 +44,9 @@ def test_force_at_a_depth_is_the_load_that_makes_it_and_close_to_that_of_an_exac
     for a, error in ((0.1, 1.0e-3), (0.3, 9.4e-3), (0.5, 2.83e-2)):
         ends = np.log((1 + a) / (1 - a))
         exact = (a * a + 1) / 2 * ends - a
-        assert sphere_force(a / 2 * ends, 1.0, reduced_modulus=1.0) / exact - 1 == pytest.approx(error, rel=0.01)
+        assert sphere_force(a / 2 * ends, 1.0, reduced_modulus=1.0) / exact - 1 == pytest.approx(
+            error, rel=0.01
+        )
     impossible = sphere_force([-1.0, 1.0, 1.0], [1.0, 0.0, 1.0], reduced_modulus=[1.0, 1.0, -1.0])
     assert np.isnan(impossible).all()
 
