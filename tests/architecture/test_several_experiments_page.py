@@ -35,7 +35,8 @@ def test_the_programs_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
     exec(first, known)
     width = {name: np.ptp(np.log(q)) for name, q in known["by_itself"].items()}  # type: ignore[attr-defined]
     assert np.ptp(np.log(known["together"])) < min(width.values())  # type: ignore[call-overload]
-    assert capsys.readouterr().out.splitlines() == ["Data against the fitted model", "[[], []]"]
+    drawn, pulls = capsys.readouterr().out.splitlines()
+    assert drawn == "Data and model against indentation depth δ" and pulls == "[[], []]"
     exec(second, {})
     problem, same = sb.load_joint_problem("one-skin.toml"), sb.load_joint_problem("values.toml")
     theta = problem.prior_medians()

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 import pytest
-from click.testing import CliRunner
+from command_line import run
 
 import skinbayes as sb
-from skinbayes.cli.main import main
 
 PRESS = {"forward": "indentation", "noise": {"family": "lognormal", "noise_scale": 0.2}}
 DEPTH = [1e-4, 2e-4, 3e-4]
@@ -35,37 +32,33 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def run(*words: object, status: int = 0) -> str:
-    found = CliRunner().invoke(main, [str(word) for word in words])
-    assert found.exit_code == status, found.output
-    return found.output
+def words(text: str) -> str:
+    return " ".join(text.split())
 
 
-def document(*words: object) -> dict[str, Any]:
-    found = CliRunner().invoke(main, [*(str(word) for word in words), "--json"])
-    assert found.exit_code == 0, found.output
-    return dict(json.loads(found.stdout))
-
-
-def test_before_a_fit(model: Path, tmp_path: Path) -> None:
-    assert "all rows (6 rows)" in " ".join(run("check", model).split())
-    assert set(document("show", model)["experiments"]) == {"large", "small"}
-    assert "small: indentation_force" in run("prior", model, "--draws", 200)
-    predicted = document("predict", model, "--set", "sphere_radius[small]=8 mm")["experiments"]
-    assert predicted["small"]["prediction"] == predicted["large"]["prediction"]
-    run("template", model, "-o", tmp_path / "data.csv")
-    header = (tmp_path / "data-small.csv").read_text(encoding="utf-8")
+def test_before_a_fit(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "all rows (6 rows)" in words(run(capsys, "check", model).output)
+    assert set(run(capsys, "show", model, "--json").document()["experiments"]) == {"large", "small"}
+    assert "small: indentation_force" in run(capsys, "prior", model, "--draws", "200").output
+    predicted = run(capsys, "predict", model, "--set", "sphere_radius[small]=8 mm", "--json").document()
+    each = {name: one["prediction"] for name, one in predicted["experiments"].items()}
+    assert each["small"] == each["large"]
+    run(capsys, "template", model, "-o", tmp_path / "data.csv")
+    mine = tmp_path / "data-small.csv"
+    header = mine.read_text(encoding="utf-8")
     assert header == "indentation_depth [m],indentation_force [N]\n"
-    (tmp_path / "data-small.csv").write_text(f"{header}1e-4,1e-3\n", encoding="utf-8")
-    said = run("check", model, "--data", f"small={tmp_path / 'data-small.csv'}")
-    assert "all rows (4 rows)" in " ".join(said.split())
-    refused = run("check", model, "--data", tmp_path / "data-small.csv", status=2)
-    assert "--data large=FILE.csv or --data small=FILE.csv" in " ".join(refused.split())
+    mine.write_text(f"{header}1e-4,1e-3\n", encoding="utf-8")
+    assert "all rows (4 rows)" in words(run(capsys, "check", model, "--data", f"small={mine}").output)
+    refused = run(capsys, "check", model, "--data", mine)
+    assert refused.status == 2 and "--data large=FILE.csv or --data small=FILE.csv" in words(refused.errors)
+    assert run(capsys, "predict", model, "--conditions", mine).status == 2
 
 
-def test_a_fit_its_page_and_a_comparison(model: Path, tmp_path: Path) -> None:
+def test_a_fit_its_page_and_a_comparison(
+    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     directory = tmp_path / "run"
-    found = document("fit", model, "-o", directory, "--ess", 200, "--report")
+    found = run(capsys, "fit", model, "-o", directory, "--ess", "200", "--report", "--json").document()
     assert found["converged"] and set(found["experiments"]) == {"large", "small"}
     assert set(found["agreement"]) == {"large", "small"}
     page = (directory / "report.html").read_text(encoding="utf-8")
@@ -73,6 +66,6 @@ def test_a_fit_its_page_and_a_comparison(model: Path, tmp_path: Path) -> None:
     for key in ("large-predictive", "small-predictive", "prior-posterior"):
         assert f'<figure id="{key}">' in page
     assert page.count('<figure id="corner">') == 1
-    said = run("compare", directory, directory, "--no-refit")
-    assert "one experiment left out at a time" in said
-    assert "sampled anew" not in run("sensitivity", directory)
+    compared = run(capsys, "compare", directory, directory, "--no-refit")
+    assert "one experiment left out at a time" in compared.output
+    assert run(capsys, "sensitivity", directory).status == 0
