@@ -13,7 +13,7 @@ from skinbayes.atomic import write_atomically
 from skinbayes.fit.fit import Fit
 from skinbayes.fit.joint_groups import of_experiment
 from skinbayes.fit.netcdf import result_image
-from skinbayes.fit.result import PosteriorResult
+from skinbayes.fit.result import JointResult
 
 if TYPE_CHECKING:
     from skinbayes.fit.left_out import LeftOutExperiment
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class JointFit(PosteriorResult):
+class JointFit(JointResult):
     """Posterior draws of the parameters of several experiments and everything computed from them.
 
     Attributes
@@ -48,8 +48,6 @@ class JointFit(PosteriorResult):
     >>> fit.names, list(fit.experiments)
     (('typical_friction_coefficient',), ['left', 'right'])
     """
-
-    problem: JointProblem | None = None
 
     def __repr__(self) -> str:
         return f"JointFit of '{self.name}': {self.provenance['sampling']['verdict']}"

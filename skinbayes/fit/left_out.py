@@ -4,25 +4,23 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
 from math import hypot
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.files.joint_model import EXPERIMENT
+from skinbayes.fit.result import JointResult
+from skinbayes.problem.joint import JointProblem
 from skinbayes.problem.subsets import without_data
 from skinbayes.sampling.draws import weighted_quantiles
 from skinbayes.statistics.reweighting import reweighted
 
-if TYPE_CHECKING:
-    from skinbayes.fit.joint_fit import JointFit
-    from skinbayes.problem.joint import JointProblem
-
 LEVELS = (0.05, 0.5, 0.95)
 
-REFIT_ESS = 1000.0
-"""Effective sample size of a fit without an experiment."""
+REFIT_ESS, REFIT_STEPS = 1000.0, 4000
+"""Effective sample size of what is sampled without an experiment, and steps after which that ends."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +61,13 @@ class LeftOutExperiment:
         return asdict(self) | {"pulls": self.pulls}
 
 
-def shared_labels(fit: JointFit) -> list[str]:
+def shared_labels(fit: JointResult) -> list[str]:
     """Free parameters that more than one experiment has."""
     places = [place for told in fit.provenance["experiments"].values() for place in told["places"]]
     return [label for i, label in enumerate(fit.names) if places.count(i) > 1]
 
 
-def left_out_experiments(fit: JointFit, refit: bool = False) -> list[LeftOutExperiment]:
+def left_out_experiments(fit: JointResult, refit: bool = False) -> list[LeftOutExperiment]:
     """Each experiment left out in turn, by weights 1/p(its data | θ) of the draws, or by a fit without it.
 
     What only this experiment has, such as its own scatter, goes back to its prior then. Draws of the posterior may not reach that
@@ -111,29 +109,36 @@ class _Drawn:
     correlation: float
 
 
-def _refitted(fit: JointFit, problem: JointProblem, before: LeftOutExperiment) -> LeftOutExperiment:
-    """The same from a fit of all other experiments; ln p is the difference of the two ln Z."""
-    from skinbayes.fit.run import sample
+def _refitted(fit: JointResult, problem: JointProblem, before: LeftOutExperiment) -> LeftOutExperiment:
+    """The same from a posterior of all other experiments; ln p is the difference of the two ln Z."""
+    from skinbayes.sampling.ensemble_engine import EnsembleEngine
+    from skinbayes.sampling.options import SamplerOptions
 
     names = [name for name, count in problem.counts().items() for _ in range(count)]
-    reduced = without_data(problem, np.array(names) != before.experiment)
-    found = sample(reduced, seed=int(fit.provenance["sampling"]["seed"]), ess=REFIT_ESS)
-    both = [one.provenance["sampling"].get("log_evidence") for one in (fit, found)]
-    if not found.converged or not all(both):
+    target = without_data(problem, np.array(names) != before.experiment).target()
+    run = fit.provenance["sampling"]
+    options = SamplerOptions(
+        seed=int(run["seed"]),
+        ess=REFIT_ESS,
+        max_steps=REFIT_STEPS,
+        importance=True,
+        expensive=problem.expensive,
+    )
+    draws = EnsembleEngine().run(target, options)
+    whole, other = run.get("log_evidence"), draws.log_evidence
+    if not draws.diagnostics["converged"] or not whole or other is None:
         return before
-    without = {label: tuple(float(q) for q in found.quantiles(label, LEVELS)) for label in before.without}
-    (whole, its_error), (value, error) = both
+    theta = target.transform.inverse(draws.samples.reshape(-1, draws.dimension))
+    logs = np.zeros(len(theta)) if draws.log_weights is None else draws.log_weights.reshape(-1)
+    weights = np.exp(logs - logs.max())
+    without = {label: _quantiles(theta[:, fit.names.index(label)], weights) for label in before.without}
+    error = hypot(whole[1], other[1])
     return replace(
-        before,
-        elpd=whole - value,
-        error=hypot(its_error, error),
-        reliable=True,
-        without=without,
-        refitted=True,
+        before, elpd=whole[0] - other[0], error=error, reliable=True, without=without, refitted=True
     )
 
 
-def _equal_draws(fit: JointFit, labels: list[str]) -> _Drawn:
+def _equal_draws(fit: JointResult, labels: list[str]) -> _Drawn:
     group = fit.groups["log_likelihood_left_out"]
     density = np.asarray(group[EXPERIMENT].values, dtype=float)
     flat = density.reshape(-1, density.shape[-1])
@@ -143,7 +148,7 @@ def _equal_draws(fit: JointFit, labels: list[str]) -> _Drawn:
     return _Drawn(columns, np.zeros(len(flat)), flat, max(1.0, len(flat) / min([len(flat), *sizes])))
 
 
-def _weighted_draws(fit: JointFit, labels: list[str]) -> _Drawn | None:
+def _weighted_draws(fit: JointResult, labels: list[str]) -> _Drawn | None:
     """The engine's own draws, if they have weights and the model is at hand: they reach further out than the posterior."""
     if fit.problem is None or "weighted_posterior" not in fit.groups:
         return None
@@ -170,7 +175,7 @@ def _left_out(name: str, place: int, drawn: _Drawn, equal: _Drawn) -> LeftOutExp
     )
 
 
-def _at(fit: JointFit, label: str, kept: NDArray[np.intp]) -> FloatArray:
+def _at(fit: JointResult, label: str, kept: NDArray[np.intp]) -> FloatArray:
     """Draws of a parameter at those that are kept of each chain, chain after chain."""
     chains = fit.groups["posterior"].sizes["chain"]
     return fit.draws(label).reshape(chains, -1)[:, kept].reshape(-1)

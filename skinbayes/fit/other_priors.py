@@ -5,22 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import hypot, inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.fit.result import FitResult
+from skinbayes.fit.result import FitResult, JointResult
 from skinbayes.problem import JointProblem, Problem
 from skinbayes.problem.other_priors import possible_range, priors_of, with_priors
 from skinbayes.sampling.draws import Draws, weighted_quantiles
 from skinbayes.statistics.priors import Prior
 from skinbayes.statistics.reweighting import quantile_errors, reweighted
 from skinbayes.statistics.widening import BOUNDED, LOGARITHMIC, factor_of_reach, widened
-
-if TYPE_CHECKING:
-    from skinbayes.fit.joint_fit import JointFit
 
 REFIT_ESS, REFIT_STEPS = 1000.0, 1000
 """Effective sample size of what is sampled anew, and steps after which that is given up."""
@@ -95,7 +91,7 @@ class OtherPriors:
         Model or data of the fit are gone.
     """
 
-    def __init__(self, fit: FitResult | JointFit, refit: bool = False, seed: int = 1) -> None:
+    def __init__(self, fit: FitResult | JointResult, refit: bool = False, seed: int = 1) -> None:
         if fit.problem is None:
             raise InputError(
                 f"'{fit.name}': its model or data are gone, so that its priors cannot be changed"
@@ -251,7 +247,7 @@ def _beyond(base: _Weighted, place: int, old: Prior, new: Prior) -> float:
     return float(total)
 
 
-def _own_draws(fit: FitResult | JointFit, priors: tuple[Prior, ...]) -> _Weighted:
+def _own_draws(fit: FitResult | JointResult, priors: tuple[Prior, ...]) -> _Weighted:
     sampling = fit.provenance["sampling"]
     evidence = sampling.get("log_evidence")
     found: tuple[float, float] | None = None if evidence is None else (evidence[0], evidence[1])

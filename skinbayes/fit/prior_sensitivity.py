@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from math import hypot, log
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -13,12 +13,9 @@ from skinbayes.arrays import FloatArray
 from skinbayes.diagnose import PriorUpdate, prior_updates
 from skinbayes.fit.arviz_adapter import power_scaling
 from skinbayes.fit.other_priors import OtherPriors, UnderOtherPriors
-from skinbayes.fit.result import FitResult
+from skinbayes.fit.result import FitResult, JointResult
 from skinbayes.phrases import and_list
 from skinbayes.statistics.transforms import VectorTransform
-
-if TYPE_CHECKING:
-    from skinbayes.fit.joint_fit import JointFit
 
 Progress = Callable[[int, int], None]
 """Called with the number of changed priors done and their total."""
@@ -240,7 +237,7 @@ def _width(factor: float) -> str:
 
 
 def prior_sensitivity(
-    fit: FitResult | JointFit, refit: bool = False, progress: Progress | None = None
+    fit: FitResult | JointResult, refit: bool = False, progress: Progress | None = None
 ) -> PriorSensitivity:
     """Find out what a fit owes to its priors, see :meth:`skinbayes.Fit.prior_sensitivity`."""
     other = OtherPriors(fit, refit)
@@ -278,7 +275,7 @@ def _changed(
     )  # fmt: skip
 
 
-def _informed(fit: FitResult | JointFit, other: OtherPriors) -> tuple[Informed, ...]:
+def _informed(fit: FitResult | JointResult, other: OtherPriors) -> tuple[Informed, ...]:
     """Power-scaling, each prior taken as a density of the logarithm where it is stated for that."""
     theta, logs = fit.theta(), [other.logarithmic(name) for name in other.names]
     log_prior, log_likelihood = _densities(fit, other, theta)
@@ -303,7 +300,7 @@ def _speaks(prior: float, likelihood: float, update: PriorUpdate) -> Speaks:
 
 
 def _densities(
-    fit: FitResult | JointFit, other: OtherPriors, theta: FloatArray
+    fit: FitResult | JointResult, other: OtherPriors, theta: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """ln of prior and likelihood at the kept draws: the likelihood is what prior and Jacobian leave of the stored density."""
     log_prior = other.problem.log_prior(theta)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from skinbayes.problem import Problem
+    from skinbayes.problem import JointProblem, Problem
 
 
 @dataclass(frozen=True)
@@ -312,3 +312,16 @@ class FitResult(PosteriorResult):
     """
 
     problem: Problem | None = None
+
+
+@dataclass(frozen=True)
+class JointResult(PosteriorResult):
+    """Posterior draws of several experiments and everything computed from them.
+
+    Attributes
+    ----------
+    groups, provenance : see :class:`PosteriorResult`
+    problem : the problem, or None if the result was read from a file whose model or data are gone
+    """
+
+    problem: JointProblem | None = None

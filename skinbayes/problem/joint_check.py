@@ -27,10 +27,10 @@ from skinbayes.problem.check import (
 from skinbayes.problem.failures import explained
 
 if TYPE_CHECKING:
-    from skinbayes.problem.joint import JointProblem
+    from skinbayes.problem.joint_densities import JointModel
 
 
-def check_joint(problem: JointProblem, seed: int = 1) -> CheckReport:
+def check_joint(problem: JointModel, seed: int = 1) -> CheckReport:
     """Check experiments that share parameters before sampling.
 
     Parameters
@@ -81,7 +81,7 @@ def check_joint(problem: JointProblem, seed: int = 1) -> CheckReport:
     return CheckReport(problem.name, _setup(problem), prior_sentences(problem), tuple(said), found)
 
 
-def _setup(problem: JointProblem) -> tuple[str, ...]:
+def _setup(problem: JointModel) -> tuple[str, ...]:
     said = [
         f"'{problem.name}' has {len(problem.free)} free inputs for {len(problem.experiments)} experiments on one skin: "
         f"{and_list(list(problem.experiments))}."
@@ -94,7 +94,7 @@ def _setup(problem: JointProblem) -> tuple[str, ...]:
     return tuple(said)
 
 
-def shared_names(problem: JointProblem) -> list[str]:
+def shared_names(problem: JointModel) -> list[str]:
     """Free parameters that more than one experiment has."""
     count = np.bincount(np.concatenate(list(problem.places.values())), minlength=problem.dimension)
     return [name for name, experiments in zip(problem.names, count, strict=True) if experiments > 1]

@@ -14,10 +14,10 @@ from skinbayes.problem.model_text import model_content, write_files
 from skinbayes.problem.summary import LONGEST, listed
 
 if TYPE_CHECKING:
-    from skinbayes.problem.joint import JointProblem
+    from skinbayes.problem.joint_densities import JointModel
 
 
-def joint_files(problem: JointProblem, path: Path) -> dict[Path, str]:
+def joint_files(problem: JointModel, path: Path) -> dict[Path, str]:
     """Model file of the experiments, and the files beside it that it needs: path to text; see `model_files`."""
     spec = problem.spec
     files: dict[Path, str] = {}
@@ -40,14 +40,14 @@ def joint_files(problem: JointProblem, path: Path) -> dict[Path, str]:
     return {path: toml_text(content), **files}
 
 
-def write_joint(problem: JointProblem, path: Path | None) -> str:
+def write_joint(problem: JointModel, path: Path | None) -> str:
     """Text of the model file; with a path it is written, and what it needs beside it."""
     place = Path(f"{problem.name}.toml") if path is None else path
     files = joint_files(problem, place)
     return files[place] if path is None else write_files(files, place)
 
 
-def joint_summary(problem: JointProblem) -> str:
+def joint_summary(problem: JointModel) -> str:
     """Title, the data of each experiment, and the names of the parameters with their priors or values."""
     said = [f"Problem '{problem.name}': {shorten(problem.spec.title, LONGEST, placeholder=' …')}"]
     for name, one in problem.experiments.items():

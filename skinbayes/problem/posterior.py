@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.files.parameter_block import ParameterSpec
@@ -19,7 +17,6 @@ from skinbayes.statistics.densities import LogDensity, LogLikelihood
 if TYPE_CHECKING:
     from skinbayes.files.joint_model import JointSpec
     from skinbayes.files.modelfile import ModelSpec
-    from skinbayes.problem.statistical_model import StatisticalModel
 
 
 class Posterior:
@@ -66,11 +63,6 @@ class Posterior:
     @abstractmethod
     def fingerprint(self) -> str:
         """Digest of everything the posterior depends on; a run is only continued where it is the same."""
-
-    @property
-    @abstractmethod
-    def parts(self) -> Mapping[str, tuple[StatisticalModel, NDArray[np.intp]]]:
-        """The models of single experiments, and which of the free parameters each has; by the name of the experiment."""
 
     @abstractmethod
     def data_likelihood(self) -> LogLikelihood:

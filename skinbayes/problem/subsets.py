@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.problem.deduplicated_rows import kinds
 from skinbayes.problem.inputs import Conditions
-from skinbayes.problem.joint import JointProblem, split
+from skinbayes.problem.joint import JointProblem
+from skinbayes.problem.joint_densities import split
 from skinbayes.statistics.groups import CrossedGroups
 
 if TYPE_CHECKING:

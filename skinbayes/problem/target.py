@@ -12,7 +12,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.problem.failures import impossible
 from skinbayes.problem.funnels import straightened
-from skinbayes.problem.posterior import Posterior
+from skinbayes.problem.joint_densities import JointModel
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
@@ -48,7 +48,7 @@ class PosteriorTarget:
     use_likelihood : False samples the prior alone, a test of the whole machinery
     """
 
-    problem: Posterior
+    problem: StatisticalModel | JointModel
     use_likelihood: bool = True
 
     @property

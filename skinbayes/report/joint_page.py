@@ -14,6 +14,7 @@ from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.drawings import TRACE, drawings, sampled
 from skinbayes.report.figures import picture
 from skinbayes.report.groups import group_sentences
+from skinbayes.report.origin import data_origin
 from skinbayes.report.ridges import posterior_ridges, ridge_sentences
 from skinbayes.report.sensitivity import EXPLAINED, HEADERS, brief_sensitivity, page_sensitivity
 from skinbayes.report.validity import validity_sentences
@@ -28,8 +29,6 @@ OF_ALL = {*(drawing.key for drawing in sampled()), TRACE.key}
 
 def joint_context(fit: JointFit, left_out: Sequence[LeftOutExperiment]) -> dict[str, Any]:
     """Everything the template shows, as text."""
-    from skinbayes.report.page import data_origin
-
     whole = fit.together
     rows, said = page_sensitivity(fit)
     kinds = [*sampled(), *([] if "weighted_posterior" in fit.groups else [TRACE])]

@@ -16,6 +16,7 @@ from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.joint_page import joint_context
 from skinbayes.report.markup import links, symbols
+from skinbayes.report.origin import data_origin
 from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.sensitivity import EXPLAINED, HEADERS, page_sensitivity
 from skinbayes.report.validity import validity_sentences
@@ -204,28 +205,3 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
     else:
         said += [sentences.with_symbols(fit, sentence) for sentence in check.predictions]
     return said
-
-
-def data_origin(fit: Fit) -> dict[str, Any]:
-    """Where the data come from; what a file without provenance does not say is empty."""
-    known = fit.provenance["data"]
-    origin = known.get("origin", {})
-    texts = (
-        "title",
-        "licence",
-        "attribution",
-        "where",
-        "how_read",
-        "digitised_by",
-        "transformation",
-        "spread",
-    )
-    return {
-        "key": opening.data_name(fit),
-        "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
-        "sha256": str(known.get("sha256", "")),
-        **{name: str(origin.get(name) or "") for name in texts},
-        "doi": [str(doi) for doi in origin.get("doi", [])],
-        "authors": ", ".join(origin.get("authors", [])),
-        "caveats": list(origin.get("caveats", [])),
-    }

@@ -10,6 +10,7 @@ import pytest
 from source_tree import ROOT
 
 import skinbayes as sb
+from skinbayes.files.modelschema import ExperimentBlock
 
 PAGE = (ROOT / "docs" / "several-experiments.md").read_text(encoding="utf-8")
 
@@ -27,6 +28,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "glass.csv").write_text(glass, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+def test_the_tables_of_an_experiment_are_named() -> None:
+    said = re.search(r"would say – (.*?) – and everything", PAGE, re.DOTALL)
+    assert said is not None
+    assert set(re.findall(r"`(\w+)`", said[1])) == set(ExperimentBlock.model_fields)
 
 
 def test_the_programs_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
