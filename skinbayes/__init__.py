@@ -16,17 +16,25 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.version import __version__
 
-__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "NoiseFamily", "Problem", "Quantity", "__version__", "build_problem",
-           "compare", "emulated", "load_dataset", "load_fit", "load_problem", "register_engine", "register_forward_model",
+__all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
+           "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "load_dataset", "load_fit",
+           "load_joint_fit", "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
            "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
-    from skinbayes.fit import Fit, load_fit, sample
+    from skinbayes.fit import Fit, JointFit, load_fit, load_joint_fit, sample
     from skinbayes.forward import ForwardModel, emulated, register_forward_model
-    from skinbayes.problem import Problem, build_problem, load_problem
+    from skinbayes.problem import (
+        JointProblem,
+        Problem,
+        build_joint_problem,
+        build_problem,
+        load_joint_problem,
+        load_problem,
+    )
     from skinbayes.sampling import register_engine
     from skinbayes.statistics import NoiseFamily, register_noise
     from skinbayes.vocabulary import Quantity, register_quantity
@@ -36,7 +44,12 @@ _HOME = {
     "Fit": "skinbayes.fit",
     "ForwardModel": "skinbayes.forward",
     "InputError": "skinbayes.errors",
+    "JointFit": "skinbayes.fit",
+    "JointProblem": "skinbayes.problem",
+    "load_joint_fit": "skinbayes.fit",
     "Problem": "skinbayes.problem",
+    "build_joint_problem": "skinbayes.problem",
+    "load_joint_problem": "skinbayes.problem",
     "build_problem": "skinbayes.problem",
     "compare": "skinbayes.comparison",
     "emulated": "skinbayes.forward",

@@ -71,6 +71,8 @@ _ALL = (
     ),
     _closed("sliding_speed", "v", "m/s", "sliding speed"),
     Quantity("sphere_radius", "R", "m", "radius of the sphere"),
+    _closed("indentation_depth", "δ", "m", "depth to which a ball is pressed into the skin"),
+    _closed("indentation_force", "F_δ", "N", "force that presses a ball to the indentation depth"),
     Quantity("viscosity", "η", "Pa s", "dynamic viscosity"),
     _closed("shear_rate", "γ̇", "1/s", "shear rate"),
     _closed("speed_viscosity_product", "ηv", "N/m", "viscosity times sliding speed"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +14,7 @@ from skinbayes.errors import InputError
 if TYPE_CHECKING:
     from skinbayes.files.provenance import Provenance
     from skinbayes.files.table import CsvTable
+    from skinbayes.problem.bound import BoundModel
 
 
 @click.command()
@@ -72,11 +73,11 @@ def show(name: str, as_json: bool) -> None:
 
 
 def _show_model(name: str, as_json: bool) -> None:
-    from skinbayes.problem import load_problem
+    from skinbayes.problem.joint import JointProblem
+    from skinbayes.problem.load import load_any_problem
     from skinbayes.units import format_quantity
 
-    problem = load_problem(name)
-    spec = problem.spec
+    problem = load_any_problem(name)
     parameters = [
         {
             "name": p.label,
@@ -88,15 +89,42 @@ def _show_model(name: str, as_json: bool) -> None:
         }
         for p in problem.parameters
     ]
+    about = {"model": problem.spec.name, "title": problem.spec.title, "description": problem.spec.description}
+    several = isinstance(problem, JointProblem)
+    told = {experiment: _told(part) for experiment, (part, _) in problem.parts.items()}
     if as_json:
-        print_json({
-            "model": spec.name, "title": spec.title, "description": spec.description, "forward": spec.forward,
-            "options": dict(problem.forward.chosen),
-            "dataset": spec.dataset, "rows": spec.rows, "observables": spec.observables, "noise": spec.noise,
-            "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)), "parameters": parameters,
-        })  # fmt: skip
+        more = {"experiments": told} if several else told[""]
+        print_json({**about, **more, "parameters": parameters})
         return
-    print_text(spec.title, "", *_paragraphs(spec.description), "")
+    print_text(problem.spec.title, "", *_paragraphs(problem.spec.description), "")
+    for experiment, (part, _) in problem.parts.items():
+        if several:
+            print_text(f"experiment:    {experiment}")
+        _print_experiment(part)
+    rows = [
+        (
+            p.label,
+            p.prior_text
+            if p.value is None
+            else f"= {format_quantity(p.value, p.unit, written=p.prior_text)}",
+            p.source,
+        )
+        for p in problem.parameters
+    ]
+    print_table(("parameter", "prior or value", "source"), rows)
+
+
+def _told(problem: BoundModel) -> dict[str, Any]:
+    spec = problem.spec
+    return {
+        "forward": spec.forward, "options": dict(problem.forward.chosen), "dataset": spec.dataset,
+        "rows": spec.rows, "observables": spec.observables,
+        "noise": spec.noise, "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)),
+    }  # fmt: skip
+
+
+def _print_experiment(problem: BoundModel) -> None:
+    spec = problem.spec
     print_text(f"forward model: {spec.forward} – {problem.forward.summary}")
     for option, value in problem.forward.chosen.items():
         print_text(f"option:        {option} = {value} ({' or '.join(problem.forward.options[option])})")
@@ -110,17 +138,6 @@ def _show_model(name: str, as_json: bool) -> None:
         print_text(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
     for covariate in spec.covariates:
         print_text(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
-    rows = [
-        (
-            p.label,
-            p.prior_text
-            if p.value is None
-            else f"= {format_quantity(p.value, p.unit, written=p.prior_text)}",
-            p.source,
-        )
-        for p in problem.parameters
-    ]
-    print_table(("parameter", "prior or value", "source"), rows)
 
 
 def _paragraphs(text: str) -> list[str]:

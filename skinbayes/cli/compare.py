@@ -60,9 +60,9 @@ def compare(
     from skinbayes.comparison import compare as compare_fits
     from skinbayes.comparison import cross_check
     from skinbayes.comparison.verdicts import plus_minus
-    from skinbayes.fit import load_fit
+    from skinbayes.fit.storage import load_any_fit
 
-    fits = [load_fit(run) for run in runs]
+    fits = [load_any_fit(run) for run in runs]
     with named_progress("nested sampling of") as told:
         checks = tuple(cross_check(fit, told) for fit in fits if nested)
     with counted_progress("refits") as progress:

@@ -10,6 +10,7 @@ import click
 
 from skinbayes.cli.fit_output import print_fit
 from skinbayes.cli.options import (
+    data_of,
     data_option,
     json_option,
     model_argument,
@@ -23,7 +24,7 @@ from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MAX_STEPS, SEED
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 
 @click.command()
@@ -60,7 +61,7 @@ if TYPE_CHECKING:
 @json_option
 def fit(
     model: str,
-    data: str | None,
+    given: tuple[str, ...],
     seed: int,
     ess: int,
     cores: int,
@@ -79,10 +80,10 @@ def fit(
     """
     from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
-    from skinbayes.problem import load_problem
+    from skinbayes.problem.load import load_any_problem
     from skinbayes.problem.rows import data_notes
 
-    problem = load_problem(model, data=data, settings=settings_of(pairs))
+    problem = load_any_problem(model, data_of(model, given), settings=settings_of(pairs))
     directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
     options = _engine_options(engine_pairs)
     if max_steps is not None:
@@ -100,8 +101,9 @@ def fit(
             err=True,
         )
         return EXIT_INTERRUPTED
-    for note in data_notes(problem):
-        say(note, err=True)
+    for name, (part, _) in problem.parts.items():
+        for note in data_notes(part):
+            say(f"{name}: {note}" if name else note, err=True)
     page = None
     if with_report:
         from skinbayes.cli.page import write_page
@@ -133,8 +135,9 @@ def _plain_value(text: str) -> int | float | bool | str:
     return text
 
 
-def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]:
-    from skinbayes.report import digest
+def _document(result: Fit | JointFit, directory: Path, page: Path | None) -> dict[str, Any]:
+    from skinbayes.fit.joint_fit import JointFit
+    from skinbayes.report import digest, joint_digest
 
     sampling = result.provenance["sampling"]
     summary = result.summary()
@@ -154,5 +157,5 @@ def _document(result: Fit, directory: Path, page: Path | None) -> dict[str, Any]
         "steps": sampling.get("steps"),
         "seconds": result.provenance["seconds"]["total"],
         "report": page and str(page),
-        **digest(result),
+        **(joint_digest(result, result.left_out()) if isinstance(result, JointFit) else digest(result)),
     }

@@ -10,28 +10,31 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.cli.output import print_sentences, print_table, say
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 MOST_ROWS = 4
 """Derived quantities that differ over more rows than this are left to the summary file."""
 
 
-def print_fit(result: Fit, directory: Path, page: Path | None) -> None:
+def print_fit(result: Fit | JointFit, directory: Path, page: Path | None) -> None:
     """Print a fit for people: the numbers, then the same sentences on model, priors and sampler as the page has."""
+    from skinbayes.fit.joint_fit import JointFit
     from skinbayes.fit.manifest import SUMMARY
-    from skinbayes.report import remarks
+    from skinbayes.report import joint_remarks, remarks
 
     title = ("" if result.converged else "NOT CONVERGED – ") + result.provenance["title"]
     rows, crowded = _rows(result)
     headers = ("parameter", "median", "5 %", "95 %", *_convergence(result))
     print_table(headers, rows, title=title, right=tuple(range(1, len(headers))))
-    print_sentences(remarks(result))
+    print_sentences(
+        joint_remarks(result, result.left_out()) if isinstance(result, JointFit) else remarks(result)
+    )
     if crowded:
         say(f"row by row in {directory / SUMMARY}: {', '.join(sorted(crowded))}")
     say(f"run: {directory}" + (f"\nreport: {page}" if page else f"\nreport: skinbayes report {directory}"))
 
 
-def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
+def _rows(result: Fit | JointFit) -> tuple[list[list[str]], set[str]]:
     """Rows of the table, and the derived quantities that are left to the file because they differ over many rows."""
     from skinbayes.units import format_quantity
 
@@ -50,7 +53,7 @@ def _rows(result: Fit) -> tuple[list[list[str]], set[str]]:
     return rows, crowded
 
 
-def _convergence(result: Fit) -> dict[str, tuple[str, Callable[[float], str]]]:
+def _convergence(result: Fit | JointFit) -> dict[str, tuple[str, Callable[[float], str]]]:
     """Headers of the diagnostics of parameters that the engine has, with their name and how they are written."""
     from skinbayes.phrases import sample_size
 

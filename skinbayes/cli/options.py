@@ -10,7 +10,13 @@ import click
 from skinbayes.errors import InputError
 
 model_argument = click.argument("model")
-data_option = click.option("--data", metavar="FILE.csv", help="Your own data instead of the model's.")
+data_option = click.option(
+    "--data",
+    "given",
+    multiple=True,
+    metavar="FILE.csv",
+    help="Your own data instead of the model's; of several experiments EXPERIMENT=FILE.csv, which can be repeated.",
+)
 set_option = click.option(
     "--set", "pairs", multiple=True, metavar="NAME=VALUE", help="Fix a parameter or condition, with its unit."
 )
@@ -48,3 +54,25 @@ def named_values(option: str, pairs: Iterable[str], example: str) -> dict[str, s
 def settings_of(pairs: Iterable[str]) -> dict[str, str]:
     """What ``--set`` says, by name."""
     return named_values("--set", pairs, 'yield_stress="50 MPa"')
+
+
+def data_of(model: str, given: tuple[str, ...]) -> Any:
+    """What ``--data`` says: nothing, a file, or a file for each of several experiments by its name."""
+    from skinbayes.files.joint_model import is_joint, load_joint_model
+
+    if not given:
+        return None
+    if not is_joint(model):
+        if len(given) > 1:
+            raise InputError(
+                f"--data: found {len(given)} files; expected one, as the model is of one experiment"
+            )
+        return given[0]
+    experiments = load_joint_model(model).experiments
+    for pair in given:
+        if pair.partition("=")[0].strip() not in experiments:
+            expected = " or ".join(f"--data {name}=FILE.csv" for name in experiments)
+            raise InputError(
+                f"--data {pair[:80]}: the model is of several experiments; expected which of them the data belong to: {expected}"
+            )
+    return named_values("--data", given, f"{next(iter(experiments))}=FILE.csv")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,8 @@ from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
     from skinbayes.comparison import AgainstBaselines
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
+    from skinbayes.fit.left_out import LeftOutExperiment
 
 
 MARK = b'<meta name="generator" content="skinbayes">'
@@ -31,7 +33,11 @@ def refuse_other_files(page: Path) -> None:
 
 
 def write_page(
-    fit: Fit, page: Path, run: Path | None, with_baselines: bool = True
+    fit: Fit | JointFit,
+    page: Path,
+    run: Path | None,
+    with_baselines: bool = True,
+    left_out: Sequence[LeftOutExperiment] | None = None,
 ) -> AgainstBaselines | None:
     """Write the page of a fit; models without theory that its model file names are fitted before, unless that was done.
 
@@ -41,6 +47,7 @@ def write_page(
     page : the file to write
     run : the run directory, in which the fits of baseline models are kept; None keeps nothing
     with_baselines : False leaves them out
+    left_out : of several experiments, what leaving out each found
 
     Returns
     -------
@@ -54,12 +61,13 @@ def write_page(
     """
     from skinbayes.cli.progress import named_progress
     from skinbayes.comparison import against_baselines
+    from skinbayes.fit import Fit
     from skinbayes.report import write_report
 
     refuse_other_files(page)
     baseline_models = None
-    if with_baselines and fit.problem is not None and fit.problem.spec.baseline_models:
+    if with_baselines and isinstance(fit, Fit) and fit.problem and fit.problem.spec.baseline_models:
         with named_progress("baseline model") as progress:
             baseline_models = against_baselines(fit, run, progress)
-    write_report(fit, page, baseline_models)
+    write_report(fit, page, baseline_models, left_out)
     return baseline_models

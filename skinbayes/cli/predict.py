@@ -23,10 +23,37 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
 
     A row without a prediction is empty (null in JSON), named on standard error with the reason, and makes the exit status 2.
     """
-    from skinbayes.problem import load_problem
+    from skinbayes.files.joint_model import is_joint
+    from skinbayes.problem.load import load_joint_problem, load_problem
 
     settings = settings_of(pairs)
-    problem = load_problem(model, settings=settings, conditions=conditions)
+    if not is_joint(model):
+        problem = load_problem(model, settings=settings, conditions=conditions)
+        document, missing = _predicted(problem, settings, model, as_json)
+    else:
+        if conditions is not None:
+            raise InputError(
+                f"--conditions: '{model}' is of several experiments; predictions are for the rows of their data"
+            )
+        joint = load_joint_problem(model, settings=settings)
+        each, missing = {}, []
+        for name, one in joint.experiments.items():
+            each[name], lacking = _predicted(one, settings, f"{model}: {name}", as_json)
+            missing += [f"{name}: {sentence}" for sentence in lacking]
+        document = {"model": joint.name, "experiments": each}
+    if as_json:
+        print_json(document)
+    for sentence in missing[:_MOST_SENTENCES]:
+        say(f"skinbayes: {model}: {sentence}", err=True)
+    if len(missing) > _MOST_SENTENCES:
+        say(f"skinbayes: {model}: {len(missing)} rows in all have no prediction", err=True)
+    return EXIT_BAD_INPUT if missing else EXIT_DONE
+
+
+def _predicted(
+    problem: Any, settings: dict[str, str], model: str, quiet: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Predictions of one experiment, printed unless quiet, and a sentence for each row that lacks one."""
     theta = problem.prior_medians()
     prediction = problem.predict(theta)
     missing = _without_value(problem, theta, prediction)
@@ -45,17 +72,11 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
         parameters[p.label] = None if given_as_none else p.value
     parameters |= {p.label: parameters[str(p.same_as)] * p.times for p in problem.tied}
     columns: dict[str, Any] = {**problem.conditions.values, **problem.conditions.labels}
-    if as_json:
-        print_json({
-            "model": problem.name, "parameters": parameters, "conditions": columns, "prediction": prediction,
-        })  # fmt: skip
-    else:
+    if not quiet:
         _print(problem, theta, columns, prediction)
-    for sentence in missing[:_MOST_SENTENCES]:
-        say(f"skinbayes: {model}: {sentence}", err=True)
-    if len(missing) > _MOST_SENTENCES:
-        say(f"skinbayes: {model}: {len(missing)} rows in all have no prediction", err=True)
-    return EXIT_BAD_INPUT if missing else EXIT_DONE
+    return {
+        "model": problem.name, "parameters": parameters, "conditions": columns, "prediction": prediction,
+    }, missing  # fmt: skip
 
 
 _MOST_SENTENCES = 10

@@ -22,10 +22,10 @@ def sensitivity(run: str, refit: bool, as_json: bool) -> None:
     Every prior is made half and twice as wide, alone and with all others, by giving the draws other weights.
     """
     from skinbayes.cli.progress import counted_progress
-    from skinbayes.fit import load_fit
+    from skinbayes.fit.storage import load_any_fit
     from skinbayes.report.sensitivity import EXPLAINED, HEADERS, sensitivity_rows
 
-    fit = load_fit(run)
+    fit = load_any_fit(run)
     with counted_progress("other priors") as progress:
         found = fit.prior_sensitivity(refit, progress if refit else None)
     if as_json:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 OPTIONS: dict[str, Any] = {"max_runs": 1}
 """Of nested sampling: one run knows ln Z to about a tenth, each further one may cost minutes."""
@@ -61,7 +61,7 @@ class CrossCheck:
         return f"'{self.name}': {by_nested}, the fit {self.log_evidence:.2f} ± {self.log_evidence_se:.2f}; {verdict}."
 
 
-def cross_check(fit: Fit, progress: CrossCheckProgress | None = None) -> CrossCheck:
+def cross_check(fit: Fit | JointFit, progress: CrossCheckProgress | None = None) -> CrossCheck:
     """Compute ln Z of a fit by nested sampling with dynesty, an independent check.
 
     Parameters

@@ -24,7 +24,7 @@ from skinbayes.comparison.weights import stacking_weights
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,7 @@ class Comparison:
 
 
 def compare(
-    fits: Sequence[Fit],
+    fits: Sequence[Fit | JointFit],
     refit: bool = True,
     leave_out: Sequence[str] = (),
     nested: bool = False,
@@ -293,7 +293,7 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
     return Comparison(tuple(models), pointwise.shape[1], grouped)
 
 
-def grouped_by(fits: Sequence[Fit]) -> tuple[str, ...]:
+def grouped_by(fits: Sequence[Fit | JointFit]) -> tuple[str, ...]:
     """Grouping columns that have effects in one of the fits."""
     labels = [label for fit in fits for label in (*fit.names, *fit.provenance.get("fixed", {}))]
     found = [
@@ -315,6 +315,6 @@ def _differences(scores: Sequence[Scores]) -> list[dict[str, LeftOut]]:
     return found
 
 
-def _describe(fit: Fit) -> str:
+def _describe(fit: Fit | JointFit) -> str:
     data = fit.provenance["data"]
     return f"{data.get('rows')} rows of {data.get('key')}"

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
+from skinbayes.fit.joint_fit import JointFit
+from skinbayes.problem.joint import JointProblem
 from skinbayes.units import format_quantity
 
 if TYPE_CHECKING:
@@ -54,7 +56,7 @@ class Parts:
         """Number of data of each part."""
         return [int(count) for count in np.bincount(self.member, minlength=len(self.labels))]
 
-    def at(self, fit: Fit, theta: FloatArray) -> Parts:
+    def at(self, fit: Fit | JointFit, theta: FloatArray) -> Parts:
         """The same parts with their densities at other parameter vectors ``(S, D)``."""
         assert fit.problem is not None
         if self.name == SINGLE:
@@ -66,7 +68,7 @@ class Parts:
         return replace(self, densities=found)
 
 
-def single_data(fit: Fit) -> Parts:
+def single_data(fit: Fit | JointFit) -> Parts:
     """The data of all observables, one by one."""
     variables = fit.groups["log_likelihood"].data_vars.values()
     densities = np.concatenate([v.values.reshape(-1, v.shape[-1]) for v in variables], axis=-1)
@@ -74,7 +76,7 @@ def single_data(fit: Fit) -> Parts:
     return Parts(SINGLE, tuple(str(i + 1) for i in range(count)), np.arange(count), densities)
 
 
-def levels(fit: Fit) -> list[Parts]:
+def levels(fit: Fit | JointFit) -> list[Parts]:
     """The levels of each grouping column that can be left out of a fit."""
     found = []
     for column, variable in fit.groups[_LEFT_OUT].data_vars.items() if _LEFT_OUT in fit.groups else ():
@@ -85,7 +87,7 @@ def levels(fit: Fit) -> list[Parts]:
     return found
 
 
-def blocks(fit: Fit, wanted: str) -> Parts:
+def blocks(fit: Fit | JointFit, wanted: str) -> Parts:
     """Blocks of neighbouring rows.
 
     Parameters
@@ -102,7 +104,11 @@ def blocks(fit: Fit, wanted: str) -> Parts:
         Another wish, a column that the data do not have or that does not differ, or the data are not at hand.
     """
     problem = fit.problem
-    if problem is None or problem.dataset is None:
+    if isinstance(fit, JointFit):
+        raise InputError(
+            f"leave out: {wanted!r} found; of several experiments, single data and whole ones ('experiment') are left out"
+        )
+    if problem is None or isinstance(problem, JointProblem) or problem.dataset is None:
         raise InputError(
             f"'{fit.name}': its model or its data are not at hand, so no blocks of rows can be left out"
         )
@@ -168,7 +174,9 @@ def _range(values: FloatArray, column: str, problem: Problem) -> str:
     return " to ".join(ends)
 
 
-def _densities(problem: Problem, member: NDArray[np.intp], count: int, theta: FloatArray) -> FloatArray:
+def _densities(
+    problem: Problem | JointProblem, member: NDArray[np.intp], count: int, theta: FloatArray
+) -> FloatArray:
     from skinbayes.fit.refit import left_out_densities
     from skinbayes.problem.subsets import without_data
 

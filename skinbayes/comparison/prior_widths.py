@@ -17,7 +17,7 @@ from skinbayes.statistics.priors import Prior
 from skinbayes.statistics.widening import FROM_ZERO, LOGARITHMIC, width_ratio
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 REACH = (2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """How many times further priors are made to reach, see :func:`skinbayes.statistics.widening.factor_of_reach`."""
@@ -166,7 +166,7 @@ def _one_of(scans: Sequence[WidthScan]) -> str:
 
 
 def prior_widths(
-    fits: Sequence[Fit], refit: bool = False, progress: Callable[[int, int], None] | None = None
+    fits: Sequence[Fit | JointFit], refit: bool = False, progress: Callable[[int, int], None] | None = None
 ) -> PriorWidths:
     """Scan widths of priors of fits of the same data.
 
@@ -277,7 +277,9 @@ def _kind(priors: Sequence[Prior]) -> Kind:
     return "larger" if all(prior.family in FROM_ZERO for prior in priors) else "wider"
 
 
-def _same_model(first: Fit, second: Fit) -> tuple[str, str, tuple[str, ...], bool] | None:
+def _same_model(
+    first: Fit | JointFit, second: Fit | JointFit
+) -> tuple[str, str, tuple[str, ...], bool] | None:
     """Names, parameters whose priors differ, and whether only in width, if two fits differ in nothing else."""
     one, two = first.problem, second.problem
     if one is None or two is None or one.names != two.names or one.fingerprint == two.fingerprint:

@@ -14,7 +14,7 @@ from skinbayes.comparison.parts import Parts, blocks, levels, single_data
 from skinbayes.statistics.pareto import largest_shape, left_out_density
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
 
 FEW_ROWS = 10
 """With fewer data, or levels, than this a standard error of a sum over them means little."""
@@ -145,7 +145,10 @@ class Difference(NamedTuple):
 
 
 def score(
-    fit: Fit, refit: bool = False, leave_out: Sequence[str] = (), progress: RefitProgress | None = None
+    fit: Fit | JointFit,
+    refit: bool = False,
+    leave_out: Sequence[str] = (),
+    progress: RefitProgress | None = None,
 ) -> Scores:
     """Score a fit by Pareto-smoothed importance sampling, and by refits where that fails if asked to.
 
@@ -214,7 +217,7 @@ def _unless_few(error: float, count: int) -> float | None:
     return error if count >= FEW_ROWS else None
 
 
-def _effective(fit: Fit) -> float:
+def _effective(fit: Fit | JointFit) -> float:
     """Number of independent draws that those of a fit are worth."""
     sizes = fit.groups["posterior"].sizes
     kept = float(sizes["chain"] * sizes["draw"])
@@ -234,7 +237,7 @@ def _by_weights(parts: Parts, effective: float, log_weights: FloatArray | None =
 
 
 def _by_own_weights(
-    fit: Fit, parts: Parts, effective: float, before: list[LeftOutLevel]
+    fit: Fit | JointFit, parts: Parts, effective: float, before: list[LeftOutLevel]
 ) -> list[LeftOutLevel]:
     """The same from the engine's own draws, if they have weights, where that is better: they reach further out."""
     if "weighted_posterior" not in fit.groups:
@@ -248,7 +251,9 @@ def _by_own_weights(
     return [new if new.reliable and not old.reliable else old for old, new in zip(before, after, strict=True)]
 
 
-def _refitted(fit: Fit, parts: Parts, place: int, effective: float, before: LeftOutLevel) -> LeftOutLevel:
+def _refitted(
+    fit: Fit | JointFit, parts: Parts, place: int, effective: float, before: LeftOutLevel
+) -> LeftOutLevel:
     """A part by a refit; by weights as before if they are reliable and the refit is not."""
     from skinbayes.fit.refit import predict_left_out
 

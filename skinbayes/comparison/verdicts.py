@@ -52,7 +52,9 @@ def level_question(column: str, grouped_by: Sequence[str]) -> str:
     rest = f" from the other {plural(column)}"
     if others:
         rest += f", the {' and '.join(others)} being known"
-    return f"Leaving out one {singular(column)} at a time asks how well a {singular(column)} never measured is predicted{rest}."
+    article = "an" if singular(column)[0] in "aeiou" else "a"
+    asks = f"asks how well {article} {singular(column)} never measured is predicted{rest}"
+    return f"Leaving out one {singular(column)} at a time {asks}."
 
 
 def unreliable_data(name: str, unreliable: int, refitted: int, count: int) -> list[str]:

@@ -69,6 +69,44 @@ def sphere_contact(
         )
 
 
+def sphere_force(
+    indentation: ArrayLike, sphere_radius: ArrayLike, *, reduced_modulus: ArrayLike
+) -> FloatArray:
+    """Load that presses a rigid sphere a given depth into an elastic half-space: `sphere_contact` the other way round.
+
+    ``F_N = (4/3) E* √R δ^(3/2)``
+
+    Parameters
+    ----------
+    indentation : δ, m, ≥ 0, any shape
+    sphere_radius : R, m, > 0, broadcasts
+    reduced_modulus : E*, Pa, > 0, broadcasts
+
+    Returns
+    -------
+    force : F_N, N, of broadcast shape; nan where an argument is impossible
+
+    Notes
+    -----
+    The sphere is taken as a paraboloid. That makes the force 0.9 % too large at δ = 0.09 R and 2.8 % at δ = 0.27 R, compared
+    with the exact sphere.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), Sect. 4.2, doi 10.1017/CBO9781139171731. The exact sphere: Sneddon, International Journal
+    of Engineering Science 3 (1965) 47, doi 10.1016/0020-7225(65)90019-4.
+
+    Examples
+    --------
+    >>> print(f"{sphere_force(2.913e-3, 8e-3, reduced_modulus=20e3 / 0.75):.3f} N")
+    0.500 N
+    """
+    depth, radius, modulus = floats(indentation, sphere_radius, reduced_modulus)
+    with np.errstate(all="ignore"):
+        depth = _possible(depth, radius, modulus)
+        return np.asarray(4 / 3 * modulus * np.sqrt(radius) * depth * np.sqrt(depth))[()]
+
+
 def mean_pressure(force: FloatArray, radius: FloatArray, modulus: FloatArray) -> FloatArray:
     """Mean pressure of `sphere_contact` alone, Pa, for its arguments as arrays; silences no warnings."""
     squared = 6.0 * _possible(force, radius, modulus) * np.square(modulus / radius)
@@ -76,5 +114,5 @@ def mean_pressure(force: FloatArray, radius: FloatArray, modulus: FloatArray) ->
 
 
 def _possible(force: FloatArray, radius: FloatArray, modulus: FloatArray) -> FloatArray:
-    """The force, nan where any of the three is impossible."""
+    """The force (or the depth), nan where any of the three is impossible."""
     return np.where((force >= 0.0) & (np.minimum(radius, modulus) > 0.0), force, np.nan)

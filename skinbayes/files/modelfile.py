@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -151,15 +151,16 @@ def read_model(content: Mapping[str, Any], path: Path, text: str) -> ModelSpec:
         raise InputError(explain(error, path, text, ModelBlock.model_fields)) from None
     places = Places(path, text)
     try:
-        _check_printable(content, places)
-        if broken := installed_forward_models()[1].get(block.forward):
-            raise InputError(f"{places('forward')}: the forward model '{block.forward}' is {broken}")
-        return _read(block, path, text, places)
+        check_printable(content, places)
+        return read_block(block, path, text, places)
     except InputError as error:
         raise InputError(places.located(str(error))) from None
 
 
-def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
+def read_block(block: ModelBlock, path: Path, text: str, where: Callable[..., str]) -> ModelSpec:
+    """A model of its tables; ``where`` gives the place of a key, for messages."""
+    if broken := installed_forward_models()[1].get(block.forward):
+        raise InputError(f"{where('forward')}: the forward model '{block.forward}' is {broken}")
     data, surface, rheology = block.data, block.surface, block.rheology
     families: dict[str, str] = {}
     noise_parameters: tuple[ParameterSpec, ...] = ()
@@ -190,7 +191,7 @@ def _read(block: ModelBlock, path: Path, text: str, where: Places) -> ModelSpec:
         description=block.description.strip(),
         forward=block.forward,
         options=block.options,
-        parameters=_read_parameters(block.parameters, where),
+        parameters=read_parameters(block.parameters, where),
         dataset=resolved(data),
         surface_name=None if surface is None else surface.name,
         surface_file=None
@@ -234,15 +235,15 @@ def _read_baseline_models(block: ModelBlock, path: Path, where: str) -> tuple[st
     return tuple(found)
 
 
-def _check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
+def check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
     """Refuse control characters: what a model file says is written to terminals, pages and other files."""
     if isinstance(item, dict):
         for key, value in item.items():
-            _check_printable(key, where, keys)
-            _check_printable(value, where, (*keys, key))
+            check_printable(key, where, keys)
+            check_printable(value, where, (*keys, key))
     elif isinstance(item, list):
         for value in item:
-            _check_printable(value, where, keys)
+            check_printable(value, where, keys)
     elif isinstance(item, str) and not "".join(item.split()).isprintable():
         raise InputError(f"{where(*keys)}: found {item[:60]!r}; expected printable characters only")
 
@@ -259,7 +260,8 @@ def _parameter_quantity(name: str, where: str) -> Quantity:
     return QUANTITIES[name]
 
 
-def _read_parameters(block: dict[str, Any], where: Any) -> tuple[ParameterSpec, ...]:
+def read_parameters(block: dict[str, Any], where: Callable[..., str]) -> tuple[ParameterSpec, ...]:
+    """Read ``[parameters]``; ``where`` gives the place of a key, for messages."""
     specs: list[ParameterSpec] = []
     for name, entry in block.items():
         quantity = _parameter_quantity(name, where("parameters", name))

@@ -178,3 +178,28 @@ class ModelBlock(_Strict):
                 f"{missing} is missing: a model of data needs both [data] and [noise], a model without data neither"
             )
         return self
+
+
+class ExperimentBlock(_Strict):
+    """``[experiments.NAME]``: what a model file of this experiment alone would say, but for surface and parameters."""
+
+    forward: str
+    options: dict[str, str] = Field(default_factory=dict)
+    data: DataBlock
+    noise: NoiseTable
+    groups: dict[str, GroupBlock] = Field(default_factory=dict)
+    discrepancy: DiscrepancyBlock | None = None
+    covariates: dict[str, CovariateBlock] = Field(default_factory=dict)
+    rheology: RheologyBlock | None = None
+    derived: dict[str, DerivedBlock] = Field(default_factory=dict)
+
+
+class JointBlock(_Strict):
+    """A whole model file of several experiments on one skin."""
+
+    format: Literal[1] = 1
+    title: str
+    description: str = ""
+    experiments: dict[str, ExperimentBlock]
+    surface: SurfaceBlock | None = None
+    parameters: dict[str, Any]

@@ -13,9 +13,11 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.fit.diagnostics import complete
+from skinbayes.fit.joint_groups import joint_groups
 from skinbayes.fit.netcdf import FORMAT
 from skinbayes.fit.references import references
 from skinbayes.fit.tree import data_groups, posterior_groups, prior_groups, weighted_group
+from skinbayes.problem.joint import JointProblem
 from skinbayes.sampling.draws import Draws
 from skinbayes.version import __version__
 
@@ -30,7 +32,7 @@ MOST_DRAWS = 10_000
 PRIOR_DRAWS = 4000
 
 
-def require_data(problem: Problem) -> None:
+def require_data(problem: Problem | JointProblem) -> None:
     """Refuse a problem without data or without anything to infer.
 
     Raises
@@ -38,6 +40,10 @@ def require_data(problem: Problem) -> None:
     InputError
         It has no data, or no free parameter.
     """
+    if isinstance(problem, JointProblem):
+        if not problem.dimension:
+            raise InputError(f"{problem.spec.path}: nothing to infer: the model needs at least one prior")
+        return
     if not problem.observations and problem.spec.observables:
         raise InputError(
             f"{problem.spec.path}: '{problem.name}' explains data that you bring; give them with --data FILE.csv"
@@ -49,7 +55,12 @@ def require_data(problem: Problem) -> None:
 
 
 def assembled(
-    problem: Problem, draws: Draws, engine: str, seed: int, wanted: float, package: str | None = None
+    problem: Problem | JointProblem,
+    draws: Draws,
+    engine: str,
+    seed: int,
+    wanted: float,
+    package: str | None = None,
 ) -> tuple[dict[str, xarray.Dataset], dict[str, Any]]:
     """Groups and provenance of a result.
 
@@ -69,26 +80,31 @@ def assembled(
     if density is None or draws.log_weights is not None or density.shape != equal.shape[:2]:
         density = target.log_density(equal.reshape(-1, draws.dimension)).reshape(equal.shape[:2])
     rng = np.random.default_rng([seed, 1])  # apart from the streams of the ensembles
-    groups = {
-        **posterior_groups(problem, _parameters(problem, equal), density, rng),
-        **prior_groups(problem, rng, PRIOR_DRAWS),
-        **data_groups(problem),
-    }
-    if draws.log_weights is not None:
-        groups["weighted_posterior"] = weighted_group(
-            problem, _parameters(problem, draws.samples), draws.log_weights
-        )
+    theta = _parameters(problem, equal)
+    weighted = None if draws.log_weights is None else (_parameters(problem, draws.samples), draws.log_weights)
+    if isinstance(problem, JointProblem):
+        prior = problem.draw_prior(rng, PRIOR_DRAWS)[np.newaxis]
+        groups = joint_groups(problem, theta, density, rng, prior, weighted)
+        provenance = _joint_provenance(problem, package)
+        cited = {r.key: r for one in problem.experiments.values() for r in references(one, engine)}
+    else:
+        groups = posterior_groups(problem, theta, density, rng)
+        groups |= prior_groups(problem, problem.draw_prior(rng, PRIOR_DRAWS)[np.newaxis], rng)
+        groups |= data_groups(problem)
+        if weighted is not None:
+            groups["weighted_posterior"] = weighted_group(problem.names, *weighted)
+        provenance = _provenance(problem, package)
+        cited = {r.key: r for r in references(problem, engine)}
     found = complete(draws, problem.names, wanted)
     if (first := found.get("first_invalid")) is not None:
         values = _parameters(problem, np.asarray(first)[np.newaxis])[0]
         found["first_invalid"] = dict(zip(problem.names, values, strict=True))
     sampling = {"engine": engine, "seed": seed, **found, "log_evidence": draws.log_evidence}
-    provenance = _provenance(problem, package)
-    provenance["references"] = [_plain(vars(reference)) for reference in references(problem, engine)]
+    provenance["references"] = [_plain(vars(reference)) for reference in cited.values()]
     return groups, provenance | {"sampling": _plain(sampling)}
 
 
-def _parameters(problem: Problem, position: FloatArray) -> FloatArray:
+def _parameters(problem: Problem | JointProblem, position: FloatArray) -> FloatArray:
     flat = problem.target().transform.inverse(position.reshape(-1, position.shape[-1]))
     return flat.reshape(position.shape)
 
@@ -111,10 +127,24 @@ def _provenance(problem: Problem, package: str | None) -> dict[str, Any]:
         if dataset.provenance is not None:
             data["origin"] = dataset.provenance.model_dump()
     return {
+        **_common_provenance(problem, package),
+        "model_path": problem.name if problem.spec.shipped else str(problem.spec.path),
+        "derived_symbols": {
+            name: block.symbol for name, block in problem.spec.derived.items() if block.symbol
+        },
+        "observables": list(problem.observables),
+        "noise": dict(problem.spec.noise),
+        "accuracy": problem.model.accuracy,
+        "options": dict(problem.forward.chosen),
+        "data": data,
+    }
+
+
+def _common_provenance(problem: Problem | JointProblem, package: str | None) -> dict[str, Any]:
+    return {
         "format": FORMAT,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "model": problem.name,
-        "model_path": problem.name if problem.spec.shipped else str(problem.spec.path),
         "model_text": problem.spec.text,
         "title": problem.spec.title,
         "description": problem.spec.description,
@@ -122,16 +152,26 @@ def _provenance(problem: Problem, package: str | None) -> dict[str, Any]:
         "fixed": {p.label: {"value": p.value, "source": p.source} for p in problem.fixed},
         "tied": {p.label: {"text": p.prior_text, "source": p.source} for p in problem.tied},
         "priors": {p.label: {"text": p.prior_text, "unit": p.unit, "source": p.source} for p in problem.free},
-        "derived_symbols": {
-            name: block.symbol for name, block in problem.spec.derived.items() if block.symbol
-        },
         "fingerprint": problem.fingerprint,
-        "observables": list(problem.observables),
-        "noise": dict(problem.spec.noise),
-        "accuracy": problem.model.accuracy,
-        "options": dict(problem.forward.chosen),
-        "data": data,
         "versions": _versions(package),
+    }
+
+
+def _joint_provenance(problem: JointProblem, package: str | None) -> dict[str, Any]:
+    """That of all experiments, and under ``experiments`` that of each."""
+    each = {
+        name: _provenance(one, package) | {"places": problem.places[name].tolist()}
+        for name, one in problem.experiments.items()
+    }
+    keys = " and ".join(str(entry["data"].get("key", name)) for name, entry in each.items())
+    return {
+        **_common_provenance(problem, package),
+        "model_path": str(problem.spec.path),
+        "observables": [],
+        "noise": {},
+        "accuracy": "",
+        "data": {"fingerprint": problem.data_fingerprint, "key": keys, "rows": len(problem.observed)},
+        "experiments": each,
     }
 
 

@@ -15,7 +15,7 @@ from skinbayes.sampling.draws import Draws
 if TYPE_CHECKING:
     import xarray
 
-    from skinbayes.problem import Problem
+    from skinbayes.problem import JointProblem, Problem
 
 WANTED = 400.0
 """Effective sample size from which quantiles can be used, Vehtari et al. (2021), doi 10.1214/20-BA1221."""
@@ -25,7 +25,7 @@ ENGINE = "draws given"
 
 
 def fit_parts(
-    problem: Problem, samples: Any, log_weights: ArrayLike | None, seed: int
+    problem: Problem | JointProblem, samples: Any, log_weights: ArrayLike | None, seed: int
 ) -> tuple[dict[str, xarray.Dataset], dict[str, Any]]:
     """Groups and provenance of a result from draws, see :meth:`skinbayes.Fit.from_draws`."""
     require_data(problem)
@@ -45,7 +45,7 @@ def fit_parts(
     return assembled(problem, Draws(position, weights), ENGINE, seed, WANTED)
 
 
-def _theta(problem: Problem, samples: Any) -> FloatArray:
+def _theta(problem: Problem | JointProblem, samples: Any) -> FloatArray:
     """Parameter vectors, shape ``(chains, draws, D)``."""
     found = getattr(samples, "posterior", samples)  # InferenceData, DataTree
     if not isinstance(found, Mapping) and not hasattr(found, "columns"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Annotated, TypeAlias
 
@@ -39,6 +39,15 @@ Inside: TypeAlias = Annotated[str, AfterValidator(_inside)]
 
 
 @dataclass(frozen=True)
+class DataNote:
+    """Where the copies of data stand, as a :class:`Manifest` says it."""
+
+    data: Inside | None = None
+    rheology: Inside | None = None
+    rows: Mapping[str, list[str]] | None = None
+
+
+@dataclass(frozen=True)
 class Manifest:
     """What ``run.json`` says.
 
@@ -51,6 +60,7 @@ class Manifest:
     settings : values that were given beside the model file, by name, as text
     rows : labels that were selected, by column; None if the data have no rows to select
     files : sha256 by path inside the run directory, with ``/``
+    experiments : ``data``, ``rheology`` and ``rows`` of each of several experiments by its name
     """
 
     model: str
@@ -62,6 +72,7 @@ class Manifest:
     settings: Mapping[str, str] = field(default_factory=dict)
     rows: Mapping[str, list[str]] | None = None
     files: Mapping[Inside, str] = field(default_factory=dict)
+    experiments: Mapping[str, DataNote] = field(default_factory=dict)
 
     def inputs(self) -> list[str]:
         """The files that the run was made from."""
@@ -102,7 +113,7 @@ def other_version(file: Path, found: object, expected: object) -> InputError:
 
 def write_manifest(directory: Path, manifest: Manifest) -> None:
     """Write ``run.json``."""
-    write_atomically(directory / RUN, sealed_note({"format": FORMAT, **vars(manifest)}))
+    write_atomically(directory / RUN, sealed_note({"format": FORMAT, **asdict(manifest)}))
 
 
 def trouble(directory: Path, manifest: Manifest) -> dict[str, str]:

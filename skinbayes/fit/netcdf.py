@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from skinbayes.errors import InputError
+from skinbayes.fit.joint_groups import EACH, of_experiment
 from skinbayes.fit.manifest import other_version
 from skinbayes.sealed import DamagedFile, checked, sealed
 
@@ -29,8 +30,8 @@ NEEDED = (
 )
 """Groups that every result has."""
 
-EACH = {"ess_bulk", "ess_tail", "r_hat"}
-"""Diagnostics that have one number for each parameter; an engine need not have them."""
+NEEDED_OF_ALL = ("posterior", "sample_stats", "log_likelihood", "prior", "observed_data", "constant_data")
+"""Groups that a result of several experiments has beside those of each."""
 
 MOST_GROUPS = 100
 MOST_VARIABLES = 100_000
@@ -108,8 +109,8 @@ def _looked_through(path: Path) -> tuple[list[str], dict[str, Any]]:
         if len(file) > MOST_GROUPS:
             raise DamagedFile(f"{len(file)} groups found, {MOST_GROUPS} at most expected")
         names = list(file)
-        if missing := [name for name in NEEDED if name not in names]:
-            raise DamagedFile(f"the group '{missing[0]}' is missing")
+        if "posterior" not in names:
+            raise DamagedFile("the group 'posterior' is missing")
         for name in names:
             group = file.get(name) if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
             if not isinstance(group, h5py.Group) or len(group) > MOST_VARIABLES:
@@ -117,9 +118,19 @@ def _looked_through(path: Path) -> tuple[list[str], dict[str, Any]]:
             for key in group:
                 _require_stored(group, key)
         provenance = json.loads(file["posterior"].attrs["skinbayes"])
+    if missing := [name for name in _needed(provenance) if name not in names]:
+        raise DamagedFile(f"the group '{missing[0]}' is missing")
     if isinstance(provenance, dict) and (found := provenance.get("format", 1)) != FORMAT:
         raise other_version(path, found, FORMAT)
     return names, provenance
+
+
+def _needed(provenance: Any) -> Sequence[str]:
+    """Groups that a result has."""
+    experiments = provenance.get("experiments") if isinstance(provenance, dict) else None
+    if not isinstance(experiments, dict) or not experiments:
+        return NEEDED
+    return [*NEEDED_OF_ALL, *(f"{name}.{group}" for name in experiments for group in NEEDED)]
 
 
 def _require_stored(group: Any, key: str) -> None:
@@ -144,7 +155,7 @@ def _require_consistent(groups: Mapping[str, xarray.Dataset], provenance: Any) -
         if not isinstance(provenance.get(key), kind):
             raise DamagedFile(f"its provenance has no usable '{key}'")
     names, sampling = provenance["names"], provenance["sampling"]
-    for key in EACH & set(sampling):
+    for key in set(EACH) & set(sampling):
         values = np.asarray(sampling[key])
         if values.shape != (len(names),) or values.dtype.kind not in "fi":
             raise DamagedFile(f"'{key}' is not one number for each parameter")
@@ -167,6 +178,8 @@ def _require_consistent(groups: Mapping[str, xarray.Dataset], provenance: Any) -
         _require_finite(weighted["theta"], "weighted_posterior/theta", ("chain", "draw", "parameter"))
         if weighted["parameter"].values.tolist() != names or np.isnan(weighted["log_weight"].values).any():
             raise DamagedFile("the weighted draws are not those of its parameters")
+    for name in provenance.get("experiments", {}):
+        _require_consistent(*of_experiment(groups, provenance, name))
     for observable in provenance["observables"]:
         rows = groups["observed_data"][observable]
         _require_finite(rows, f"observed_data/{observable}", ("row",))

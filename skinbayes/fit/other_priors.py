@@ -10,8 +10,8 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.fit.result import FitResult
-from skinbayes.problem import Problem
+from skinbayes.fit.result import FitResult, JointResult
+from skinbayes.problem import JointProblem, Problem
 from skinbayes.problem.other_priors import possible_range, priors_of, with_priors
 from skinbayes.sampling.draws import Draws, weighted_quantiles
 from skinbayes.statistics.priors import Prior
@@ -91,12 +91,12 @@ class OtherPriors:
         Model or data of the fit are gone.
     """
 
-    def __init__(self, fit: FitResult, refit: bool = False, seed: int = 1) -> None:
+    def __init__(self, fit: FitResult | JointResult, refit: bool = False, seed: int = 1) -> None:
         if fit.problem is None:
             raise InputError(
                 f"'{fit.name}': its model or data are gone, so that its priors cannot be changed"
             )
-        self.problem: Problem = fit.problem
+        self.problem: Problem | JointProblem = fit.problem
         self.priors = priors_of(self.problem)
         self.own = _own_draws(fit, self.priors)
         self._refit, self._seed = refit, seed
@@ -247,7 +247,7 @@ def _beyond(base: _Weighted, place: int, old: Prior, new: Prior) -> float:
     return float(total)
 
 
-def _own_draws(fit: FitResult, priors: tuple[Prior, ...]) -> _Weighted:
+def _own_draws(fit: FitResult | JointResult, priors: tuple[Prior, ...]) -> _Weighted:
     sampling = fit.provenance["sampling"]
     evidence = sampling.get("log_evidence")
     found: tuple[float, float] | None = None if evidence is None else (evidence[0], evidence[1])

@@ -13,7 +13,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.diagnose import PriorUpdate, prior_updates
 from skinbayes.fit.arviz_adapter import power_scaling
 from skinbayes.fit.other_priors import OtherPriors, UnderOtherPriors
-from skinbayes.fit.result import FitResult
+from skinbayes.fit.result import FitResult, JointResult
 from skinbayes.phrases import and_list
 from skinbayes.statistics.transforms import VectorTransform
 
@@ -237,7 +237,7 @@ def _width(factor: float) -> str:
 
 
 def prior_sensitivity(
-    fit: FitResult, refit: bool = False, progress: Progress | None = None
+    fit: FitResult | JointResult, refit: bool = False, progress: Progress | None = None
 ) -> PriorSensitivity:
     """Find out what a fit owes to its priors, see :meth:`skinbayes.Fit.prior_sensitivity`."""
     other = OtherPriors(fit, refit)
@@ -275,7 +275,7 @@ def _changed(
     )  # fmt: skip
 
 
-def _informed(fit: FitResult, other: OtherPriors) -> tuple[Informed, ...]:
+def _informed(fit: FitResult | JointResult, other: OtherPriors) -> tuple[Informed, ...]:
     """Power-scaling, each prior taken as a density of the logarithm where it is stated for that."""
     theta, logs = fit.theta(), [other.logarithmic(name) for name in other.names]
     log_prior, log_likelihood = _densities(fit, other, theta)
@@ -299,7 +299,9 @@ def _speaks(prior: float, likelihood: float, update: PriorUpdate) -> Speaks:
     return "both" if FAR <= update.prior_quantile <= 1 - FAR else "conflict"
 
 
-def _densities(fit: FitResult, other: OtherPriors, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _densities(
+    fit: FitResult | JointResult, other: OtherPriors, theta: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """ln of prior and likelihood at the kept draws: the likelihood is what prior and Jacobian leave of the stored density."""
     log_prior = other.problem.log_prior(theta)
     transform = other.problem.target().transform

@@ -16,7 +16,7 @@ from skinbayes.problem.subsets import without_data
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from skinbayes.problem import Problem
+    from skinbayes.problem import JointProblem, Problem
 
 REFIT_ESS = 1000.0
 """Effective sample size of a refit unless told otherwise."""
@@ -52,7 +52,7 @@ class Refit:
 
 
 def predict_left_out(
-    problem: Problem,
+    problem: Problem | JointProblem,
     keep: NDArray[np.bool_],
     whole: FloatArray,
     effective: float,
@@ -103,7 +103,9 @@ def predict_left_out(
     return Refit(value, error, bool(draws.diagnostics["converged"]) and agree)
 
 
-def left_out_densities(problem: Problem, reduced: Problem, theta: FloatArray) -> FloatArray:
+def left_out_densities(
+    problem: Problem | JointProblem, reduced: Problem | JointProblem, theta: FloatArray
+) -> FloatArray:
     """ln p(data left out | all other data, θ) by the rule of products, shape ``(S,)``.
 
     Parameters

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from skinbayes.problem import Problem
+    from skinbayes.problem import JointProblem, Problem
 
 
 @dataclass(frozen=True)
-class FitResult:
-    """Posterior draws of a problem and everything computed from them.
+class PosteriorResult:
+    """Posterior draws and everything computed from them.
 
     Attributes
     ----------
@@ -30,7 +30,6 @@ class FitResult:
         engine with weights made is kept in ``weighted_posterior``. Of ``emcee`` a chain is an ensemble; its draws
         are thinned to near independence and ordered in time. All values in SI.
     provenance : versions, model text, data source, and under ``sampling`` engine, seed and its diagnostics by name
-    problem : the problem, or None if the result was read from a file whose model or data are gone
 
     Examples
     --------
@@ -45,7 +44,6 @@ class FitResult:
 
     groups: Mapping[str, xarray.Dataset]
     provenance: Mapping[str, Any]
-    problem: Problem | None = None
 
     @property
     def name(self) -> str:
@@ -266,7 +264,7 @@ class FitResult:
         """
         from skinbayes.fit.arviz_adapter import to_arviz
 
-        return to_arviz(self.groups)
+        return to_arviz({name: group for name, group in self.groups.items() if "." not in name})
 
     def cite(self, style: Literal["text", "bibtex"] = "text") -> list[str]:
         """What to cite: the theory that the model used, the data, the methods and this software.
@@ -301,3 +299,29 @@ class FitResult:
             raise InputError(f"style: found {style!r}; expected 'text' or 'bibtex'")
         known = [Reference(**entry) for entry in self.provenance["references"]]
         return [reference.text() if style == "text" else reference.bibtex() for reference in known]
+
+
+@dataclass(frozen=True)
+class FitResult(PosteriorResult):
+    """Posterior draws of a problem and everything computed from them.
+
+    Attributes
+    ----------
+    groups, provenance : see :class:`PosteriorResult`
+    problem : the problem, or None if the result was read from a file whose model or data are gone
+    """
+
+    problem: Problem | None = None
+
+
+@dataclass(frozen=True)
+class JointResult(PosteriorResult):
+    """Posterior draws of several experiments and everything computed from them.
+
+    Attributes
+    ----------
+    groups, provenance : see :class:`PosteriorResult`
+    problem : the problem, or None if the result was read from a file whose model or data are gone
+    """
+
+    problem: JointProblem | None = None

@@ -5,15 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
 from skinbayes.errors import InputError
 from skinbayes.fit.assemble import assembled, require_data
 from skinbayes.fit.fit import Fit
+from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.run_directory import RunDirectory
 from skinbayes.plugins import ENGINES as INSTALLED_ENGINES
 from skinbayes.plugins import installed
+from skinbayes.problem.joint import JointProblem
 
 if TYPE_CHECKING:
     from skinbayes.problem import Problem
@@ -21,8 +23,16 @@ if TYPE_CHECKING:
     from skinbayes.sampling.progress import RunProgress
 
 
+@overload
+def sample(problem: Problem, *positional: Any, **options: Any) -> Fit: ...
+
+
+@overload
+def sample(problem: JointProblem, *positional: Any, **options: Any) -> JointFit: ...
+
+
 def sample(
-    problem: Problem,
+    problem: Problem | JointProblem,
     seed: int = SEED,
     ess: float = EFFECTIVE_SAMPLE_SIZE,
     cores: int = 1,
@@ -32,7 +42,7 @@ def sample(
     preparing: Callable[[int, int], None] | None = None,
     engine: str | Engine = "emcee",
     **options: Any,
-) -> Fit:
+) -> Fit | JointFit:
     """Sample the posterior of a problem until enough has been sampled.
 
     With ``emcee``, several independent ensembles start from draws of the prior, led towards the posterior where those do not
@@ -42,7 +52,7 @@ def sample(
 
     Parameters
     ----------
-    problem : a problem with data and at least one free parameter
+    problem : a problem with data and at least one free parameter, or several experiments
     seed : non-negative integer
     ess : effective sample size wanted in every parameter
     cores : worker processes that share the ensembles
@@ -57,8 +67,8 @@ def sample(
 
     Returns
     -------
-    Fit
-        Also when the run ended without converging: then ``fit.converged`` is False.
+    Fit or JointFit
+        The latter of several experiments. Also when the run ended without converging: then ``fit.converged`` is False.
 
     Raises
     ------
@@ -96,7 +106,7 @@ def sample(
     )
     settings.check(problem.dimension)  # before anything is written
 
-    def fitted(run: RunDirectory | None) -> Fit:
+    def fitted(run: RunDirectory | None) -> Fit | JointFit:
         started, processor = time.perf_counter(), time.process_time()
         problem.prepare(preparing, cores)  # before work is shared out, so that it is done once
         if run is not None:
@@ -110,7 +120,10 @@ def sample(
             "total": time.perf_counter() - started,
             "processor": time.process_time() - processor,
         }
-        return Fit(groups, provenance | {"seconds": seconds}, problem)
+        provenance |= {"seconds": seconds}
+        if isinstance(problem, JointProblem):
+            return JointFit(groups, provenance, problem)
+        return Fit(groups, provenance, problem)
 
     if directory is None:
         return fitted(None)

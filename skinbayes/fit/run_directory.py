@@ -19,6 +19,7 @@ from skinbayes.errors import (
     cannot_write,
     warn_of_repair,
 )
+from skinbayes.files.joint_model import EXPERIMENTS
 from skinbayes.fit.manifest import (
     BASELINE_MODELS,
     RESULT,
@@ -43,10 +44,10 @@ from skinbayes.sampling.watched import WatchedDirectory
 from skinbayes.sealed import put_aside
 
 if TYPE_CHECKING:
-    from skinbayes.fit.result import FitResult
-    from skinbayes.problem import Problem
+    from skinbayes.fit.result import PosteriorResult
+    from skinbayes.problem import JointProblem, Problem
 
-FOLDERS = ("data", STEPS, BASELINE_MODELS)
+FOLDERS = ("data", EXPERIMENTS, STEPS, BASELINE_MODELS)
 """Folders inside a run directory."""
 
 
@@ -68,7 +69,9 @@ class RunDirectory:
     store : the steps of the sampler
     """
 
-    def __init__(self, path: Path, problem: Problem, resume: bool, engine: str = "emcee") -> None:
+    def __init__(
+        self, path: Path, problem: Problem | JointProblem, resume: bool, engine: str = "emcee"
+    ) -> None:
         self.path = path
         self.store = SampleStore(path / STEPS, resume=resume)
         self._problem = problem
@@ -168,7 +171,7 @@ class RunDirectory:
         """Raise :class:`FolderGone` if the directory is no longer where it was."""
         self._watched.check()
 
-    def keep(self, fit: FitResult) -> None:
+    def keep(self, fit: PosteriorResult) -> None:
         """Write the result, and see that everything is there."""
         self.check()
         try:

@@ -9,10 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import PARTIAL, write_atomically
 from skinbayes.errors import InputError, warn_of_repair
+from skinbayes.files.joint_model import EXPERIMENTS
 from skinbayes.files.locate import shipped_names
 from skinbayes.files.spectrum import spectrum_text
-from skinbayes.fit.manifest import BASELINE_MODELS, RUN, STEPS, Manifest, read_manifest, write_manifest
+from skinbayes.fit.manifest import (
+    BASELINE_MODELS,
+    RUN,
+    STEPS,
+    DataNote,
+    Manifest,
+    read_manifest,
+    write_manifest,
+)
 from skinbayes.fit.run_lock import LOCK
+from skinbayes.problem.joint import JointProblem
 from skinbayes.problem.rheology import flow_curves_text
 from skinbayes.sampling.store import stored_fingerprint
 from skinbayes.sealed import DamagedFile, put_aside
@@ -99,45 +109,40 @@ def remove_leftovers(directory: Path) -> None:
             item.unlink(missing_ok=True)
 
 
-def own_baseline_models(problem: Problem) -> list[Path]:
+def own_baseline_models(problem: Problem | JointProblem) -> list[Path]:
     """Baseline models that are no shipped models."""
     return [Path(name) for name in problem.spec.baseline_models if Path(name).suffix == ".toml"]
 
 
-def write_inputs(directory: Path, problem: Problem, engine: str) -> Manifest:
+def write_inputs(directory: Path, problem: Problem | JointProblem, engine: str) -> Manifest:
     """Put note, model file, data, curves and baseline models of a problem into its run directory.
 
     What stands there already and differs is put aside and named in a :class:`RepairWarning`.
     """
     copies: dict[str, Path] = {}
     texts = {"model.toml": problem.spec.text}
-    note: dict[str, Any] = {"data": None, "surface": None, "rheology": None, "rows": None}
+    note: dict[str, Any] = {}
+    experiments: dict[str, DataNote] = {}
+    if isinstance(problem, JointProblem):
+        experiments = {
+            name: _data(one, f"{EXPERIMENTS}/{name}/", texts, copies)
+            for name, one in problem.experiments.items()
+        }
+        parts = list(problem.experiments.values())
+    else:
+        note |= vars(_data(problem, "", texts, copies))
+        parts = [problem]
+    spectra = [
+        (one.tables.spectrum, one.spec.surface_file) for one in parts if one.tables.spectrum is not None
+    ]
+    spectrum, file = spectra[0] if spectra else (None, None)
     settings = {name: text for name, text in problem.settings.items() if name != "surface"}
-    if "surface" in problem.settings and problem.spec.surface_file is None:
+    if "surface" in problem.settings and file is None:
         settings["surface"] = problem.settings["surface"]
-    if problem.dataset is not None:
-        source = Path(problem.dataset.path)
-        note["data"] = "data/columns.csv" if problem.dataset.in_memory else f"data/{source.name}"
-        if problem.dataset.in_memory:
-            texts[note["data"]] = problem.dataset.to_csv()
-        else:
-            copies[note["data"]] = source
-        note["rows"] = {column: list(labels) for column, labels in problem.dataset.selection.items()}
-        provenance = source.with_name("provenance.toml")
-        if not problem.dataset.in_memory and source.name == "data.csv" and provenance.exists():
-            copies[f"data/{provenance.name}"] = provenance
-            note["data"] = "data"
-    rheology, by, spectrum = problem.spec.rheology, problem.spec.rheology_by, problem.tables.spectrum
-    if rheology is not None and by is not None and rheology not in shipped_names("datasets"):
-        note["rheology"] = "rheology.csv"
-        if Path(rheology).is_file():
-            copies["rheology.csv"] = Path(rheology)
-        else:
-            texts["rheology.csv"] = flow_curves_text(problem.flow_curves, by)
     if spectrum is not None:
         note["surface"] = "spectrum.csv"
-        if problem.spec.surface_file is not None:
-            copies["spectrum.csv"] = problem.spec.surface_file
+        if file is not None:
+            copies["spectrum.csv"] = file
         else:
             texts["spectrum.csv"] = spectrum_text(spectrum)
     copies |= {f"{BASELINE_MODELS}/{path.name}": path for path in own_baseline_models(problem)}
@@ -145,7 +150,15 @@ def write_inputs(directory: Path, problem: Problem, engine: str) -> Manifest:
     contents = {name: source.read_bytes() for name, source in copies.items()}
     contents |= {name: text.encode() for name, text in texts.items()}
     files = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
-    manifest = Manifest(problem.name, problem.fingerprint, engine, **note, settings=settings, files=files)
+    manifest = Manifest(
+        problem.name,
+        problem.fingerprint,
+        engine,
+        **note,
+        settings=settings,
+        files=files,
+        experiments=experiments,
+    )
     # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again
     write_manifest(directory, manifest)
     for name, content in contents.items():
@@ -153,8 +166,33 @@ def write_inputs(directory: Path, problem: Problem, engine: str) -> Manifest:
     return manifest
 
 
+def _data(problem: Problem, folder: str, texts: dict[str, str], copies: dict[str, Path]) -> DataNote:
+    """Add data and flow curves of one experiment to the texts and copies of a run; where they will stand."""
+    data = rheology = rows = None
+    if problem.dataset is not None:
+        source = Path(problem.dataset.path)
+        data = f"{folder}data/{'columns.csv' if problem.dataset.in_memory else source.name}"
+        if problem.dataset.in_memory:
+            texts[data] = problem.dataset.to_csv()
+        else:
+            copies[data] = source
+        rows = {column: list(labels) for column, labels in problem.dataset.selection.items()}
+        provenance = source.with_name("provenance.toml")
+        if not problem.dataset.in_memory and source.name == "data.csv" and provenance.exists():
+            copies[f"{folder}data/{provenance.name}"] = provenance
+            data = f"{folder}data"
+    named, by = problem.spec.rheology, problem.spec.rheology_by
+    if named is not None and by is not None and named not in shipped_names("datasets"):
+        rheology = f"{folder}rheology.csv"
+        if Path(named).is_file():
+            copies[rheology] = Path(named)
+        else:
+            texts[rheology] = flow_curves_text(problem.flow_curves, by)
+    return DataNote(data, rheology, rows)
+
+
 def _write_copy(copy: Path, content: bytes) -> None:
-    copy.parent.mkdir(exist_ok=True)
+    copy.parent.mkdir(parents=True, exist_ok=True)
     if copy.is_symlink() or (copy.exists() and not (copy.is_file() and copy.read_bytes() == content)):
         aside = put_aside(copy)
         warn_of_repair(

@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.errors import InputError, warn_of_repair
 from skinbayes.fit.fit import Fit
+from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.manifest import (
     BASELINE_MODELS,
     RESULT,
     RUN,
     STEPS,
     SUMMARY,
+    DataNote,
     Manifest,
     read_manifest,
     trouble,
 )
 from skinbayes.fit.netcdf import read_result
+from skinbayes.problem.joint import JointProblem
+from skinbayes.problem.problem import Problem
 from skinbayes.sealed import DamagedFile, file_digest
 from skinbayes.version import __version__
 
@@ -26,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from skinbayes.files.dataset import Dataset
-    from skinbayes.problem import Problem
 
 
 def load_fit(path: str | Path) -> Fit:
@@ -66,6 +69,58 @@ def load_fit(path: str | Path) -> Fit:
     >>> np.array_equal(again.theta(), fit.theta())
     True
     """
+    fit = load_any_fit(path)
+    if isinstance(fit, JointFit):
+        raise InputError(f"{path}: a fit of several experiments; in Python skinbayes.load_joint_fit reads it")
+    return fit
+
+
+def load_joint_fit(path: str | Path) -> JointFit:
+    """Read a fit of several experiments.
+
+    Parameters
+    ----------
+    path : a netCDF file written by :meth:`JointFit.save`, or a run directory written by ``skinbayes fit``
+
+    Returns
+    -------
+    JointFit
+        With its problem, where model and data are at hand.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_fit` does, and for a fit of one experiment.
+
+    Warns
+    -----
+    RepairWarning
+        As :func:`load_fit` does.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import numpy as np
+    >>> import skinbayes as sb
+    >>> noise = {"family": "gaussian", "noise_scale": 0.1}
+    >>> one = {"forward": "constant", "noise": noise, "data": {"friction_coefficient": [0.4]}}
+    >>> problem = sb.build_joint_problem(
+    ...     {"left": one, "right": one}, parameters={"typical_friction_coefficient": {"uniform": [0, 2]}}
+    ... )
+    >>> fit = sb.JointFit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 100))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     again = load_joint_fit(fit.save(pathlib.Path(folder) / "fit.nc"))
+    >>> np.array_equal(again.theta(), fit.theta())
+    True
+    """
+    fit = load_any_fit(path)
+    if isinstance(fit, Fit):
+        raise InputError(f"{path}: a fit of one experiment; load_fit reads it")
+    return fit
+
+
+def load_any_fit(path: str | Path) -> Fit | JointFit:
+    """Read a fit, of one experiment or of several; see :func:`load_fit`."""
     path = Path(path)
     run = path if path.is_dir() else None
     file = path if run is None else run / RESULT
@@ -95,7 +150,10 @@ def load_fit(path: str | Path) -> Fit:
                 f"{table}: damaged, or changed since the run was made; the numbers of the run are in {file}"
             )
     provenance = dict(provenance)
-    return Fit(groups=groups, provenance=provenance, problem=_rebuild(file, run, manifest, provenance))
+    problem = _rebuild(file, run, manifest, provenance)
+    if "experiments" in provenance:
+        return JointFit(groups, provenance, problem if isinstance(problem, JointProblem) else None)
+    return Fit(groups, provenance, problem if isinstance(problem, Problem) else None)
 
 
 def _unfinished(path: Path) -> str:
@@ -131,9 +189,9 @@ def _undamaged(run: Path) -> Manifest:
 
 def _rebuild(
     file: Path, run: Path | None, manifest: Manifest | None, provenance: Mapping[str, Any]
-) -> Problem | None:
+) -> Problem | JointProblem | None:
     """The problem of a stored run, from the copies beside it or, for a bare file, from the shipped models."""
-    from skinbayes.problem import load_problem
+    from skinbayes.problem.load import load_any_problem
 
     reason, written = "what they say is not what was fitted", provenance["versions"].get("skinbayes")
     if run is None and written != __version__:
@@ -142,7 +200,11 @@ def _rebuild(
         reason = "the model or its data are not what was fitted"
     try:
         shipped = str(provenance["model_path"])
-        problem = _from_copies(run, manifest) if run and manifest else load_problem(shipped)
+        problem: Problem | JointProblem
+        if run and manifest:
+            problem = (_joint_from_copies if manifest.experiments else _from_copies)(run, manifest)
+        else:
+            problem = load_any_problem(shipped)
         # copies were compared with their checksums; of any other model file nothing is known
         if _is_same(problem, provenance) if run and manifest else _is_identical(problem, provenance):
             return _renamed(problem, provenance)
@@ -156,20 +218,43 @@ def _rebuild(
     return None
 
 
-def _from_copies(run: Path, manifest: Manifest) -> Problem:
+def _data_of(run: Path, note: DataNote | Manifest) -> Dataset | None:
+    """The copy of the data of an experiment."""
     from skinbayes.files.dataset import load_dataset
-    from skinbayes.problem import load_problem
 
+    if note.data is None:
+        return None
+    data = load_dataset(run / note.data, missing="keep")
+    # which need not be those that the model file selects
+    return data.select(note.rows) if note.rows else data
+
+
+def _settings(run: Path, manifest: Manifest) -> dict[str, str]:
     settings = dict(manifest.settings)
     if manifest.surface is not None:
         settings["surface"] = str(run / manifest.surface)
+    return settings
+
+
+def _joint_from_copies(run: Path, manifest: Manifest) -> JointProblem:
+    from skinbayes.files.dataset import load_dataset
+    from skinbayes.files.joint_model import load_joint_model
+    from skinbayes.problem.joint_bind import bind_joint
+
+    notes = manifest.experiments
+    data = {name: found for name, note in notes.items() if (found := _data_of(run, note)) is not None}
+    curves = {name: load_dataset(run / note.rheology) for name, note in notes.items() if note.rheology}
+    spec = load_joint_model(run / "model.toml")
+    return bind_joint(spec, data, settings=_settings(run, manifest), rheologies=curves)
+
+
+def _from_copies(run: Path, manifest: Manifest) -> Problem:
+    from skinbayes.problem import load_problem
+
     rheology = None if manifest.rheology is None else run / manifest.rheology
-    data: Dataset | None = None
-    if manifest.data is not None:
-        data = load_dataset(run / manifest.data, missing="keep")
-        # which need not be those that the model file selects
-        data = data.select(manifest.rows) if manifest.rows else data
-    problem = load_problem(run / "model.toml", data, settings, rheology=rheology)
+    problem = load_problem(
+        run / "model.toml", _data_of(run, manifest), _settings(run, manifest), rheology=rheology
+    )
     copies = [
         str(run / BASELINE_MODELS / Path(name).name) if Path(name).suffix == ".toml" else name
         for name in problem.spec.baseline_models
@@ -177,8 +262,17 @@ def _from_copies(run: Path, manifest: Manifest) -> Problem:
     return replace(problem, spec=replace(problem.spec, baseline_models=tuple(copies)))
 
 
-def _renamed(problem: Problem, provenance: Mapping[str, Any]) -> Problem:
+def _renamed(problem: Problem | JointProblem, provenance: Mapping[str, Any]) -> Problem | JointProblem:
     """The problem under the names it was fitted with, not those of the copies in the run directory."""
+    if isinstance(problem, JointProblem):
+        told = provenance["experiments"]
+        experiments = {}
+        for name, one in problem.experiments.items():
+            renamed = _renamed(one, told[name])
+            experiments[name] = renamed if isinstance(renamed, Problem) else one
+        return replace(
+            problem, spec=replace(problem.spec, name=str(provenance["model"])), experiments=experiments
+        )
     spec = replace(
         problem.spec,
         name=str(provenance["model"]),
@@ -190,12 +284,12 @@ def _renamed(problem: Problem, provenance: Mapping[str, Any]) -> Problem:
     return replace(problem, spec=spec, dataset=dataset)
 
 
-def _is_identical(problem: Problem, provenance: Mapping[str, Any]) -> bool:
+def _is_identical(problem: Problem | JointProblem, provenance: Mapping[str, Any]) -> bool:
     """Whether everything that a posterior depends on is what it was, the noise and the version of skinbayes included."""
     return problem.fingerprint == provenance.get("fingerprint")
 
 
-def _is_same(problem: Problem, provenance: Mapping[str, Any]) -> bool:
+def _is_same(problem: Problem | JointProblem, provenance: Mapping[str, Any]) -> bool:
     """Whether a problem is the one that was fitted; unlike the fingerprint this survives a new version of skinbayes."""
     try:
         return bool(

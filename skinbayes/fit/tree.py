@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import ceil
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from skinbayes.vocabulary import QUANTITIES, STANDARD_DEVIATION_SUFFIX, lookup
 if TYPE_CHECKING:
     import xarray
 
+    from skinbayes.files.parameter_block import ParameterSpec
     from skinbayes.problem import Problem
     from skinbayes.problem.shared_scatter import SharedScatter
 
@@ -40,7 +41,11 @@ FLAG_DRAWS = 500
 
 
 def posterior_groups(
-    problem: Problem, draws: FloatArray, log_density: FloatArray, rng: np.random.Generator
+    problem: Problem,
+    draws: FloatArray,
+    log_density: FloatArray,
+    rng: np.random.Generator,
+    step: int | None = None,
 ) -> dict[str, xarray.Dataset]:
     """Groups that follow from posterior draws.
 
@@ -50,6 +55,7 @@ def posterior_groups(
     draws : shape ``(chain, draw, D)``, SI
     log_density : log posterior density in the sampled (unconstrained) coordinates, shape ``(chain, draw)``
     rng : for the predictive draws
+    step : of what differs by row one draw in so many is kept; as many as `KEPT_NUMBERS` allows if omitted
 
     Returns
     -------
@@ -61,17 +67,17 @@ def posterior_groups(
         `KEPT_NUMBERS` allows: its coordinate ``draw`` says which.
     """
     effects = None if problem.shared is None else _at(draws, lambda theta: problem.draw_effects(theta, rng))
-    step = _thinning(problem, draws)
+    step = step or thinning(problem.conditions.n_rows, draws)
     kept, kept_effects = draws[:, ::step], None if effects is None else effects[:, ::step]
     pointwise = partial(problem.log_likelihood, pointwise=True)
     groups = {
         "posterior": _parameters(problem, draws, effects),
-        "sample_stats": _dataset({"lp": (("chain", "draw"), log_density)}, draws),
+        "sample_stats": dataset_of({"lp": (("chain", "draw"), log_density)}, draws),
         "posterior_predictive": _rows(problem, _simulated(problem, kept, rng, kept_effects), kept, step),
         "log_likelihood": _rows(problem, _at(kept, pointwise), kept, step),
     }
     if by_row := _derived_by_row(problem, kept):
-        groups["derived_by_row"] = _dataset(by_row, kept, {"row": problem.conditions.row_labels()}, step)
+        groups["derived_by_row"] = dataset_of(by_row, kept, {"row": problem.conditions.row_labels()}, step)
     if problem.correlated is not None and kept_effects is not None:
         groups |= _discrepancy(problem.correlated, kept, kept_effects, step)
     left_out = {
@@ -84,9 +90,9 @@ def posterior_groups(
     if left_out:
         labels = problem.conditions.labels
         levels = {f"{column}_level": list(dict.fromkeys(labels[column].tolist())) for column in left_out}
-        groups["log_likelihood_left_out"] = _dataset(left_out, kept, levels, step)
+        groups["log_likelihood_left_out"] = dataset_of(left_out, kept, levels, step)
     if flags := _flags(problem, draws):
-        groups["validity"] = _dataset(flags, draws, {"row": problem.conditions.row_labels()})
+        groups["validity"] = dataset_of(flags, draws, {"row": problem.conditions.row_labels()})
     return groups
 
 
@@ -106,16 +112,16 @@ def _discrepancy(
     if shared.scatter.drift:
         coordinates["series"] = list(shared.series)
         variables["drift"] = (("chain", "draw", "series"), effects[..., shared.scatter.drift_effects])
-    return {"discrepancy": _dataset(variables, draws, coordinates, step)} if variables else {}
+    return {"discrepancy": dataset_of(variables, draws, coordinates, step)} if variables else {}
 
 
-def weighted_group(problem: Problem, draws: FloatArray, log_weights: FloatArray) -> xarray.Dataset:
+def weighted_group(names: Sequence[str], draws: FloatArray, log_weights: FloatArray) -> xarray.Dataset:
     """The draws of an engine whose draws have weights, as it made them: ``theta`` and ``log_weight``."""
     variables = {
         "theta": (("chain", "draw", "parameter"), draws),
         "log_weight": (("chain", "draw"), log_weights),
     }
-    return _dataset(variables, draws, {"parameter": list(problem.names)})
+    return dataset_of(variables, draws, {"parameter": list(names)})
 
 
 def columns_to_leave_out(problem: Problem) -> list[str]:
@@ -133,10 +139,11 @@ def _flags(problem: Problem, draws: FloatArray) -> dict[str, Any]:
     return {name: (("row",), values.mean(axis=0), {"units": "1"}) for name, values in found.items()}
 
 
-def prior_groups(problem: Problem, rng: np.random.Generator, count: int) -> dict[str, xarray.Dataset]:
-    """``prior`` and ``prior_predictive`` groups of ``count`` draws."""
-    draws = problem.draw_prior(rng, count)[np.newaxis]
-    step = _thinning(problem, draws)
+def prior_groups(
+    problem: Problem, draws: FloatArray, rng: np.random.Generator, step: int | None = None
+) -> dict[str, xarray.Dataset]:
+    """``prior`` and ``prior_predictive`` groups of draws from the prior, shape ``(1, draw, D)``; see `posterior_groups`."""
+    step = step or thinning(problem.conditions.n_rows, draws)
     predictive = _simulated(problem, draws[:, ::step], rng, None)
     return {
         "prior": _parameters(problem, draws),
@@ -183,12 +190,14 @@ def data_groups(problem: Problem) -> dict[str, xarray.Dataset]:
     return groups
 
 
-def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None = None) -> xarray.Dataset:
-    """Free parameters (levels of a grouping column as a dimension), derived quantities and effects of groups."""
+def free_parameters(
+    free: Sequence[ParameterSpec], draws: FloatArray
+) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """Variables and coordinates of free parameters; their levels are a dimension."""
     variables: dict[str, Any] = {}
     coordinates: dict[str, list[str]] = {}
-    for name in dict.fromkeys(parameter.name for parameter in problem.free):
-        entries = [(i, p) for i, p in enumerate(problem.free) if p.name == name]
+    for name in dict.fromkeys(parameter.name for parameter in free):
+        entries = [(i, p) for i, p in enumerate(free) if p.name == name]
         if entries[0][1].by is None:
             variables[name] = (("chain", "draw"), draws[..., entries[0][0]])
         else:
@@ -199,6 +208,12 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
                 dimension = f"{name}_{dimension}"
                 coordinates[dimension] = levels
             variables[name] = (("chain", "draw", dimension), draws[..., [i for i, _ in entries]])
+    return variables, coordinates
+
+
+def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None = None) -> xarray.Dataset:
+    """Free parameters (levels of a grouping column as a dimension), derived quantities and effects of groups."""
+    variables, coordinates = free_parameters(problem.free, draws)
     derived = _derived(problem, draws)
     labels = problem.conditions.row_labels()
     for name, values in derived.items():
@@ -217,7 +232,7 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
             name, dimension = f"{column}_effect", f"{column}_level"
             coordinates[dimension] = list(members)
             variables[name] = (("chain", "draw", dimension), effects[..., groups.effects_of(column)])
-    dataset = _dataset(variables, draws, coordinates)
+    dataset = dataset_of(variables, draws, coordinates)
     for key, variable in dataset.data_vars.items():
         own = next((p for p in problem.free if p.name == key), None)
         variable.attrs["kind"] = (
@@ -247,9 +262,9 @@ def _simulated(
     return np.concatenate(parts).reshape(*draws.shape[:2], -1)
 
 
-def _thinning(problem: Problem, draws: FloatArray) -> int:
+def thinning(rows: int, draws: FloatArray) -> int:
     """One draw of so many is kept of what differs by row; 1 with few rows."""
-    numbers = draws.shape[0] * draws.shape[1] * problem.conditions.n_rows
+    numbers = draws.shape[0] * draws.shape[1] * rows
     return max(1, ceil(numbers / KEPT_NUMBERS))
 
 
@@ -298,10 +313,10 @@ def _rows(problem: Problem, values: FloatArray, draws: FloatArray, step: int) ->
     variables = {
         name: (("chain", "draw", "row"), part) for name, part in zip(problem.observables, parts, strict=True)
     }
-    return _dataset(variables, draws, {"row": problem.conditions.row_labels()}, step)
+    return dataset_of(variables, draws, {"row": problem.conditions.row_labels()}, step)
 
 
-def _dataset(
+def dataset_of(
     variables: dict[str, Any],
     draws: FloatArray,
     coordinates: dict[str, list[str]] | None = None,

@@ -8,19 +8,19 @@ from functools import cached_property
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Tables
-from skinbayes.problem.batches import as_batch
 from skinbayes.problem.covariates import apply_covariates
 from skinbayes.problem.deduplicated_rows import DistinctRows, distinct_rows
 from skinbayes.problem.failures import explained
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.observations import Observation
+from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.shared_scatter import SharedScatter
 from skinbayes.statistics.correlated_scatter import CorrelatedScatter
@@ -28,7 +28,7 @@ from skinbayes.statistics.groups import CrossedGroups
 
 
 @dataclass(frozen=True)
-class BoundModel:
+class BoundModel(Posterior):
     """A forward model bound to its parameters and to the rows at which it is evaluated; frozen.
 
     ``theta`` below is one parameter vector ``(D,)`` in SI units in the order of :attr:`names`, or a batch ``(B, D)``; a batch
@@ -81,11 +81,6 @@ class BoundModel:
         """Name of the model."""
         return self.spec.name
 
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """Names of the free parameters; ``name[level]`` where a parameter differs by a grouping column."""
-        return tuple(parameter.label for parameter in self.free)
-
     @property
     def shared(self) -> CrossedGroups | CorrelatedScatter | None:
         """What rows share beside the prediction, integrated out; None if they are independent."""
@@ -97,16 +92,6 @@ class BoundModel:
         if self.correlated is not None:
             return self.correlated.parameters
         return () if self.groups is None else tuple(f"group_scale[{c}]" for c in self.groups.columns)
-
-    @property
-    def parameters(self) -> tuple[ParameterSpec, ...]:
-        """All parameters: free, fixed, and tied to others."""
-        return (*self.free, *self.fixed, *self.tied)
-
-    @property
-    def dimension(self) -> int:
-        """Number of free parameters D."""
-        return len(self.free)
 
     @property
     def observables(self) -> tuple[str, ...]:
@@ -223,9 +208,6 @@ class BoundModel:
     @cached_property
     def _parted(self) -> tuple[dict[str, FloatArray], list[InputPlan]]:
         return _parted(self.plan, self.conditions)
-
-    def _batch(self, theta: ArrayLike) -> tuple[FloatArray, bool]:
-        return as_batch(theta, self.names)
 
 
 def _parted(plan: tuple[InputPlan, ...], rows: Conditions) -> tuple[dict[str, FloatArray], list[InputPlan]]:

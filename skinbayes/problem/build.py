@@ -98,23 +98,28 @@ def build_problem(
     """
     unusable_noise_families()  # makes those that can be used known
     model = forward_model(forward) if isinstance(forward, str) else forward
-    observables = _observables(model, observable)
-    several = not (observable is None or isinstance(observable, str))
-    dataset = None if data is None else _as_dataset(data, f"{name}-data")
-    content: dict[str, Any] = {
-        "format": 1,
-        "title": title or name,
-        "description": description,
-        "forward": model.name,
-    }
-    content["options"] = dict(options or {})
-    if dataset is not None:
-        content["data"] = _without_none({
-            **_source(data, dataset), "observables" if several else "observable": observables if several else observables[0],
-            "rows": None if rows is None else {key: list(levels) for key, levels in rows.items()},
-            "spread": spread,
-            "input_spread": input_spread, "missing": missing,
-        })  # fmt: skip
+    tables, dataset, curves = tables_of(
+        model, data, name, noise=noise, observable=observable, rows=rows, spread=spread, input_spread=input_spread,
+        missing=missing, groups=groups, discrepancy=discrepancy, covariates=covariates, rheology=rheology, derived=derived,
+        options=options,
+    )  # fmt: skip
+    content: dict[str, Any] = {"format": 1, "title": title or name, "description": description, **tables}
+    content |= common_tables(name, surface, parameters)
+    content["conditions"] = {
+        key: {"values": [written_value(v, _unit(key), f"{name}: conditions.{key}") for v in np.atleast_1d(values).tolist()]}
+        for key, values in (conditions or {}).items()
+    }  # fmt: skip
+    spec = replace(read_model(content, Path(name), ""), text=toml_text(content))
+    dataset = None if dataset is None else selected_dataset(spec, dataset)
+    spectrum = surface if isinstance(surface, TabulatedSpectrum) else None
+    return bind(spec, dataset, forward=model, surface=spectrum, rheology=curves)
+
+
+def common_tables(
+    name: str, surface: str | Path | TabulatedSpectrum | None, parameters: Mapping[str, Any]
+) -> dict[str, Any]:
+    """``[surface]`` and ``[parameters]`` of a model file from values."""
+    content: dict[str, Any] = {}
     if isinstance(surface, TabulatedSpectrum):
         content["surface"] = {"file": f"{name}-spectrum.csv"}
     elif surface is not None:
@@ -123,6 +128,40 @@ def build_problem(
         key: written_parameter(entry, _unit(key), f"{name}: parameters.{key}")
         for key, entry in parameters.items()
     }
+    return content
+
+
+def tables_of(
+    model: ForwardModel,
+    data: Any,
+    name: str,
+    *,
+    noise: Mapping[str, Any] | None = None,
+    observable: str | Sequence[str] | None = None,
+    rows: Mapping[str, Sequence[str]] | None = None,
+    spread: str | None = None,
+    input_spread: str | None = None,
+    missing: str | None = None,
+    groups: Mapping[str, Any] | None = None,
+    discrepancy: Mapping[str, Any] | None = None,
+    covariates: Mapping[str, Mapping[str, Any]] | None = None,
+    rheology: Mapping[str, Any] | None = None,
+    derived: Mapping[str, Mapping[str, Any]] | None = None,
+    options: Mapping[str, str] | None = None,
+) -> tuple[dict[str, Any], Dataset | None, Dataset | None]:
+    """The tables of one experiment from values, as `build_problem` takes them; its data, and its flow curves."""
+    observables = _observables(model, observable)
+    several = not (observable is None or isinstance(observable, str))
+    dataset = None if data is None else _as_dataset(data, f"{name}-data")
+    content: dict[str, Any] = {"forward": model.name}
+    content["options"] = dict(options or {})
+    if dataset is not None:
+        content["data"] = _without_none({
+            **_source(data, dataset), "observables" if several else "observable": observables if several else observables[0],
+            "rows": None if rows is None else {key: list(levels) for key, levels in rows.items()},
+            "spread": spread,
+            "input_spread": input_spread, "missing": missing,
+        })  # fmt: skip
     if noise is not None:
         places = {one: noise.get(one, {}) for one in observables} if several else {observables[0]: noise}
         blocks = {one: _noise(one, block, f"{name}: noise") for one, block in places.items()}
@@ -152,14 +191,7 @@ def build_problem(
         curves = _as_dataset(given, f"{name}-rheology")
         content["rheology"] = {**_source(given, curves), "by": rheology.get("by")}
     content["derived"] = {key: dict(block) for key, block in (derived or {}).items()}
-    content["conditions"] = {
-        key: {"values": [written_value(v, _unit(key), f"{name}: conditions.{key}") for v in np.atleast_1d(values).tolist()]}
-        for key, values in (conditions or {}).items()
-    }  # fmt: skip
-    spec = replace(read_model(content, Path(name), ""), text=toml_text(content))
-    dataset = None if dataset is None else selected_dataset(spec, dataset)
-    spectrum = surface if isinstance(surface, TabulatedSpectrum) else None
-    return bind(spec, dataset, forward=model, surface=spectrum, rheology=curves)
+    return content, dataset, curves
 
 
 def _observables(model: ForwardModel, given: str | Sequence[str] | None) -> list[str]:

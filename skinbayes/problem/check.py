@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,7 @@ from skinbayes.phrases import row_count
 from skinbayes.problem.failures import explained
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
+from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.rows import data_notes
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.units import format_quantity
@@ -89,23 +91,24 @@ def check_problem(problem: StatisticalModel, seed: int = 1) -> CheckReport:
     InputError
         No prior draw gives a finite prediction.
     """
-    most = FEWEST_DRAWS if _solved_anew(problem) else DRAWS
+    most = FEWEST_DRAWS if solved_anew(problem) else DRAWS
     count = max(FEWEST_DRAWS, min(most, PREDICTIONS // problem.conditions.n_rows))
     draws = problem.draw_prior(np.random.default_rng([seed, 3]), count) if problem.free else np.zeros((1, 0))
-    predictions, usable, positive = _predictions(problem, draws)
+    predictions, usable, positive = predictions_over(problem, draws)
     identifiability = None
     if problem.observed is not None and problem.free:
         with explained(problem.spec.path, "what the data can tell cannot be computed"):
             identifiability = _identify(problem, draws[usable], positive)
-    return CheckReport(problem.name, _setup(problem), _priors(problem), predictions, identifiability)
+    return CheckReport(problem.name, setup(problem), prior_sentences(problem), predictions, identifiability)
 
 
-def _solved_anew(problem: StatisticalModel) -> bool:
+def solved_anew(problem: StatisticalModel) -> bool:
     """Whether a prediction takes hundredths of a second because the model has no table."""
     return problem.forward.expensive and problem.forward.prepare is None
 
 
-def _setup(problem: StatisticalModel) -> tuple[str, ...]:
+def setup(problem: StatisticalModel) -> tuple[str, ...]:
+    """What the problem is made of, in sentences."""
     free, fixed = len(problem.free), len(problem.fixed)
     tied = f", and {len(problem.tied)} tied to others" if problem.tied else ""
     said = [
@@ -129,7 +132,8 @@ def _setup(problem: StatisticalModel) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _priors(problem: StatisticalModel) -> tuple[str, ...]:
+def prior_sentences(problem: Posterior) -> tuple[str, ...]:
+    """A sentence on each free parameter and each that is tied."""
     said = []
     for p in problem.free:
         interval = p.prior.interval(0.9) if p.prior else ()
@@ -140,7 +144,7 @@ def _priors(problem: StatisticalModel) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _predictions(
+def predictions_over(
     problem: StatisticalModel, draws: FloatArray
 ) -> tuple[tuple[str, ...], NDArray[np.bool_], NDArray[np.bool_]]:
     """Sentences about finite predictions, which of the draws have them, and which data are predicted > 0 by all of those."""
@@ -178,20 +182,34 @@ def _predictions(
     return tuple(said), finite, positive
 
 
-def _identify(
-    problem: StatisticalModel, draws: FloatArray, positive: NDArray[np.bool_]
-) -> Identifiability | None:
+def entering(problem: Posterior) -> list[int]:
+    """Places of the free parameters that enter predictions, not scatter alone."""
     scatter = (*noise_parameter_names(), *SCATTER_PARAMETERS)
-    entering = [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
-    if not entering:
-        return None
-    centre = problem.prior_medians()
+    return [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
+
+
+def with_others(centre: FloatArray, places: list[int]) -> Callable[[FloatArray], FloatArray]:
+    """What completes vectors of some parameters ``(B, K)`` to vectors of all ``(B, D)``, the others at ``centre``."""
 
     def full(theta: FloatArray) -> FloatArray:
         vectors = np.tile(centre, (len(theta), 1))
-        vectors[:, entering] = theta
+        vectors[:, places] = theta
         return vectors
 
+    return full
+
+
+def scattered(
+    problem: StatisticalModel, centre: FloatArray, positive: NDArray[np.bool_]
+) -> Callable[[FloatArray], FloatArray]:
+    """Predictions of all data at vectors ``(B, D)`` as numbers that scatter independently with width 1, ``(B, M + G)``.
+
+    Parameters
+    ----------
+    problem : with data
+    centre : parameter vector whose noise is taken, shape ``(D,)``
+    positive : which data are predicted > 0 over all of the prior, shape ``(M,)``
+    """
     typical = problem.predict_data(centre)
     if not np.isfinite(problem.independent_scatter(centre, np.zeros((1, len(typical))))).all():
         raise InputError(
@@ -203,11 +221,23 @@ def _identify(
     scale = np.where(logarithmic & ~problem.noise_is_logarithmic, 1 / typical, 1.0)
 
     def predict(theta: FloatArray) -> FloatArray:
-        predicted = problem.predict_data(full(theta))
+        predicted = problem.predict_data(theta)
         with np.errstate(all="ignore"):
             values = np.where(logarithmic, np.log(predicted), predicted)
             # group effects make data scatter together: what only shifts a whole group is not taken for information
             return problem.independent_scatter(centre, values / scale)
+
+    return predict
+
+
+def _identify(
+    problem: StatisticalModel, draws: FloatArray, positive: NDArray[np.bool_]
+) -> Identifiability | None:
+    places = entering(problem)
+    if not places:
+        return None
+    centre = problem.prior_medians()
+    full, predict = with_others(centre, places), scattered(problem, centre, positive)
 
     def blocks(theta: FloatArray) -> dict[str, FloatArray]:
         # the quantity of each parameter vector; a block that the parameters leave alone comes once for all
@@ -222,14 +252,14 @@ def _identify(
         return named_in_pieces(blocks, theta, problem.conditions.n_rows)
 
     return identify(
-        [problem.names[i] for i in entering],
-        predict,
-        draws[:, entering],
+        [problem.names[i] for i in places],
+        lambda theta: predict(full(theta)),
+        draws[:, places],
         1.0,
-        rows=len(typical),
+        rows=len(positive),
         groups=_groups(problem),
         derived=derived,
-        maximum_draws=FEW_POINTS if _solved_anew(problem) else POINTS,
+        maximum_draws=FEW_POINTS if solved_anew(problem) else POINTS,
     )
 
 

@@ -36,11 +36,26 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
     InputError
         A prior that a model file cannot state: one that was cut off.
     """
-    spec, files = problem.spec, {}
+    files: dict[Path, str] = {}
+    content = model_content(problem, path, files, path.stem)
+    return {path: toml_text(content), **files}
+
+
+def model_content(problem: BoundModel, path: Path, files: dict[Path, str], stem: str) -> dict[str, Any]:
+    """Tables of the model file of a problem at ``path``.
+
+    Parameters
+    ----------
+    problem, path : as for :func:`model_files`
+    files : is given the files beside it that it needs
+    stem : what their names begin with
+    """
+    spec = problem.spec
 
     def beside(what: str, text: str) -> str:
-        files[path.with_name(f"{path.stem}-{what}.csv")] = text
-        return f"{path.stem}-{what}.csv"
+        name = f"{stem}-{what}.csv"
+        files[path.with_name(name)] = text
+        return name
 
     content: dict[str, Any] = {
         "format": 1,
@@ -108,7 +123,7 @@ def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
     content["baseline_models"] = [
         _located(Path(y), path) if y.endswith(".toml") else y for y in spec.baseline_models
     ]
-    return {path: toml_text(content), **files}
+    return content
 
 
 def write_model(problem: BoundModel, path: Path) -> str:
@@ -116,7 +131,11 @@ def write_model(problem: BoundModel, path: Path) -> str:
 
     Raises :class:`InputError` if one of them is there already.
     """
-    files = model_files(problem, path)
+    return write_files(model_files(problem, path), path)
+
+
+def write_files(files: Mapping[Path, str], path: Path) -> str:
+    """Write files that are not there yet; the text of that at ``path`` is returned."""
     for file in files:
         if file.exists() or file.is_symlink():
             raise InputError(f"{file}: there already; nothing was written. Give another name")

@@ -14,7 +14,7 @@ from skinbayes.problem.failures import impossible
 from skinbayes.problem.fingerprint import digest_data, digest_model
 from skinbayes.problem.likelihood import Likelihood
 from skinbayes.problem.predicting import PredictingModel
-from skinbayes.statistics.densities import LogDensity, LogLikelihood
+from skinbayes.statistics.densities import LogLikelihood
 
 MANY_ROWS = 1_000  # with so many a likelihood takes far longer than a step of the sampler
 
@@ -48,32 +48,12 @@ class StatisticalModel(PredictingModel):
         """Digest of the data alone; models are compared where it is the same."""
         return digest_data(self.dataset, self.observations)
 
+    @property
+    def parts(self) -> dict[str, tuple[StatisticalModel, NDArray[np.intp]]]:
+        """Itself, under no name, with all of its parameters."""
+        return {"": (self, np.arange(self.dimension))}
+
     # -- densities ---------------------------------------------------------------------------------------------------
-
-    def log_prior(self, theta: ArrayLike) -> FloatArray:
-        """Log prior density, per SI unit of each parameter.
-
-        Parameters
-        ----------
-        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
-
-        Returns
-        -------
-        ndarray
-            Shape ``(B,)`` or scalar; −inf outside the support.
-
-        Raises
-        ------
-        InputError
-            ``theta`` has the wrong number of parameters.
-
-        Examples
-        --------
-        >>> bool(problem.log_prior(middle) > problem.log_prior(3.0 * middle))
-        True
-        """
-        batch, single = self._batch(theta)
-        return unbatch(self._prior(batch), single)
 
     def log_likelihood(self, theta: ArrayLike, pointwise: bool = False) -> FloatArray:
         """Log-likelihood of the data.
@@ -133,75 +113,6 @@ class StatisticalModel(PredictingModel):
         batch, single = self._batch(theta)
         return unbatch(impossible(self.likelihood.left_out(batch, column)), single)
 
-    def log_posterior(self, theta: ArrayLike) -> FloatArray:
-        """Log of prior times likelihood, not normalised.
-
-        Parameters
-        ----------
-        theta : ``(D,)`` or ``(B, D)``, SI, in the order of :attr:`names`
-
-        Returns
-        -------
-        ndarray
-            Shape ``(B,)`` or scalar.
-
-        Raises
-        ------
-        InputError
-            The model has no data, or ``theta`` has the wrong number of parameters.
-
-        Examples
-        --------
-        >>> found = problem.log_posterior(middle)
-        >>> bool(np.isclose(found, problem.log_prior(middle) + problem.log_likelihood(middle)))
-        True
-        """
-        batch, single = self._batch(theta)
-        return unbatch(impossible(self._posterior(batch)), single)
-
-    def prior_transform(self, u: ArrayLike) -> FloatArray:
-        """Parameters at quantiles of their priors, as nested samplers need them.
-
-        Parameters
-        ----------
-        u : ``(D,)`` or ``(B, D)``, between 0 and 1
-
-        Returns
-        -------
-        ndarray
-            Shape of ``u``, SI.
-
-        Raises
-        ------
-        InputError
-            ``u`` has the wrong number of parameters.
-
-        Examples
-        --------
-        >>> np.array_equal(problem.prior_transform(np.full(4, 0.5)), middle)
-        True
-        """
-        batch, single = self._batch(u)
-        columns = [
-            parameter.prior.quantile(batch[:, i]) for i, parameter in enumerate(self.free) if parameter.prior
-        ]
-        return unbatch(np.stack(columns, axis=-1), single)
-
-    def prior_density(self) -> LogDensity:
-        """The prior as a density: it gains a Jacobian when coordinates change.
-
-        Returns
-        -------
-        LogDensity
-            A function of ``(B, D)``, SI, that returns ``(B,)``.
-
-        Examples
-        --------
-        >>> problem.prior_density()(middle[np.newaxis]).shape
-        (1,)
-        """
-        return self._prior
-
     def data_likelihood(self) -> LogLikelihood:
         """The likelihood: it stays as it is when coordinates change.
 
@@ -218,41 +129,6 @@ class StatisticalModel(PredictingModel):
         return LogLikelihood(self.likelihood.total)
 
     # -- prior draws, checks, sampling -------------------------------------------------------------------------------
-
-    def draw_prior(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Draw parameter vectors from the prior.
-
-        Parameters
-        ----------
-        rng : source of randomness
-        count : how many
-
-        Returns
-        -------
-        ndarray
-            Shape ``(count, D)``, SI.
-
-        Examples
-        --------
-        >>> problem.draw_prior(rng, 3).shape
-        (3, 4)
-        """
-        return np.stack([p.prior.draw(rng, count) for p in self.free if p.prior], axis=-1)
-
-    def prior_medians(self) -> FloatArray:
-        """Prior median of each free parameter.
-
-        Returns
-        -------
-        ndarray
-            Shape ``(D,)``, SI.
-
-        Examples
-        --------
-        >>> problem.prior_medians().shape
-        (4,)
-        """
-        return np.array([p.prior.median for p in self.free if p.prior], dtype=float)
 
     def simulate(
         self, theta: ArrayLike, rng: np.random.Generator, effects: FloatArray | None = None
@@ -366,14 +242,6 @@ class StatisticalModel(PredictingModel):
     def expensive(self) -> bool:
         """Whether a likelihood takes so long that fewer walkers are better: an expensive forward model, or very many rows."""
         return self.forward.expensive or self.conditions.n_rows >= MANY_ROWS
-
-    @cached_property
-    def _prior(self) -> LogDensity:
-        return LogDensity.independent([parameter.prior for parameter in self.free if parameter.prior])
-
-    @cached_property
-    def _posterior(self) -> LogDensity:
-        return self._prior.times(self.data_likelihood())
 
     @cached_property
     def likelihood(self) -> Likelihood:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import compress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,23 @@ from numpy.typing import NDArray
 from skinbayes.arrays import FloatArray
 from skinbayes.problem.deduplicated_rows import kinds
 from skinbayes.problem.inputs import Conditions
+from skinbayes.problem.joint import JointProblem
+from skinbayes.problem.joint_densities import split
 from skinbayes.statistics.groups import CrossedGroups
 
 if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
 
 
-def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem:
+@overload
+def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem: ...
+
+
+@overload
+def without_data(problem: JointProblem, keep: NDArray[np.bool_]) -> JointProblem: ...
+
+
+def without_data(problem: Problem | JointProblem, keep: NDArray[np.bool_]) -> Problem | JointProblem:
     """The problem without some of its data, such as those of one person.
 
     Its parameters are those of the whole problem, in the same order, so that draws of one are parameter vectors of the other. A
@@ -27,8 +37,8 @@ def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem:
 
     Parameters
     ----------
-    problem : a problem with data
-    keep : which data stay, shape ``(M,)``: those of the first observable, then those of the second, …
+    problem : a problem with data, or several experiments
+    keep : which data stay, shape ``(M,)``: those of the first observable, then those of the second, … experiment by experiment
 
     Returns
     -------
@@ -42,6 +52,13 @@ def without_data(problem: Problem, keep: NDArray[np.bool_]) -> Problem:
     >>> without_data(problem, problem.conditions.labels["person"] != "ID01").conditions.n_rows
     10
     """
+    if isinstance(problem, JointProblem):
+        each = split(problem, keep)
+        kept = {
+            name: one if each[name].all() else without_data(one, each[name])
+            for name, one in problem.experiments.items()
+        }
+        return replace(problem, experiments=kept)
     if len(problem.observations) > 1 or not keep.any() or problem.dataset is None:
         reduced = replace(problem)
         reduced.__dict__["model"] = problem.model

@@ -20,14 +20,15 @@ def summary(problem: BoundModel) -> str:
         explained = ", ".join(f"{o.name} (noise {o.noise.name})" for o in problem.observations)
         said.append(f"data: {row_count(problem.conditions.n_rows)} of {problem.dataset.shown}: {explained}")
     said.append(f"forward model: {problem.forward.name}")
-    said += _listed("free", (f"{p.label}: {p.prior_text}" for p in problem.free))
-    said += _listed("fixed", (f"{p.label}: {p.prior_text}" for p in problem.fixed))
+    said += listed("free", (f"{p.label}: {p.prior_text}" for p in problem.free))
+    said += listed("fixed", (f"{p.label}: {p.prior_text}" for p in problem.fixed))
     if problem.tied:
-        said += _listed("tied", (f"{p.label} {p.prior_text}" for p in problem.tied))
+        said += listed("tied", (f"{p.label} {p.prior_text}" for p in problem.tied))
     return "\n".join(said)
 
 
-def _listed(title: str, lines: Iterable[str]) -> list[str]:
+def listed(title: str, lines: Iterable[str]) -> list[str]:
+    """A title with the number of lines, and the first of them."""
     found = list(lines)
     more = [f"  and {len(found) - MOST_NAMES} more"] if len(found) > MOST_NAMES else []
     shown = [f"  {shorten(line, LONGEST, placeholder=' …')}" for line in found[:MOST_NAMES]]

@@ -12,6 +12,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.problem.failures import impossible
 from skinbayes.problem.funnels import straightened
+from skinbayes.problem.joint_densities import JointModel
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
@@ -47,7 +48,7 @@ class PosteriorTarget:
     use_likelihood : False samples the prior alone, a test of the whole machinery
     """
 
-    problem: StatisticalModel
+    problem: StatisticalModel | JointModel
     use_likelihood: bool = True
 
     @property
@@ -66,11 +67,11 @@ class PosteriorTarget:
     def transform(self) -> VectorTransform:
         """Map between parameters in SI and the real space; the density is zero where it leads out of their support."""
         supports = [p.prior.support for p in self.problem.free if p.prior]
-        if self.problem.groups is None:
+        if all(part.groups is None for part, _ in self.problem.parts.values()):
             return VectorTransform.for_supports(supports)
-        return straightened(
-            self.problem, VectorTransform(tuple(_with_walls(support) for support in supports))
-        )
+        walls = VectorTransform(tuple(_with_walls(support) for support in supports))
+        # what several experiments share is known from all of them, so that funnels of one are none of the whole
+        return straightened(self.problem, walls) if isinstance(self.problem, StatisticalModel) else walls
 
     @cached_property
     def _density(self) -> LogDensity:
@@ -91,7 +92,7 @@ class PosteriorTarget:
         if not self.use_likelihood:
             return np.zeros(len(position))
         with np.errstate(all="ignore"):
-            return self.problem.log_likelihood(self.transform.inverse(position))
+            return impossible(self.problem.data_likelihood()(self.transform.inverse(position)))
 
     def prior_transform(self, unit: FloatArray) -> FloatArray:
         """Positions at quantiles of the prior, rows of the unit cube ``(B, D)``."""
@@ -99,14 +100,14 @@ class PosteriorTarget:
 
     def integrated_out(self, position: FloatArray, rng: np.random.Generator) -> dict[str, FloatArray]:
         """Effects of each group, averaged over its levels."""
-        groups = self.problem.groups
-        if groups is None:
-            return {}
-        effects = self.problem.draw_effects(self.transform.inverse(position), rng)
-        return {
-            f"the effect of {column}": effects[:, groups.effects_of(column)].mean(axis=1)
-            for column in groups.columns
-        }
+        theta, found = self.transform.inverse(position), {}
+        for name, (part, place) in self.problem.parts.items():
+            if part.groups is not None:
+                effects = part.draw_effects(theta[:, place], rng)
+                for column in part.groups.columns:
+                    words = f"the effect of {column}" + (f" in {name}" if name else "")
+                    found[words] = effects[:, part.groups.effects_of(column)].mean(axis=1)
+        return found
 
     def starts(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Positions to start from: prior draws, thinned towards the posterior but as dispersed as the draws allow.

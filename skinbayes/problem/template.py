@@ -8,11 +8,13 @@ from pathlib import Path
 
 from skinbayes.errors import InputError
 from skinbayes.files.find_dataset import find_dataset
+from skinbayes.files.joint_model import load_joint_model
 from skinbayes.files.modelfile import ModelSpec, load_model
 from skinbayes.files.parameter_block import label_column
 from skinbayes.files.scatter_block import ORDER
 from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
+from skinbayes.problem.joint_bind import experiment_of
 from skinbayes.problem.rheology import REPLACED
 from skinbayes.units import split_header
 from skinbayes.vocabulary import LABELS, QUANTITIES, STANDARD_DEVIATION_SUFFIX, suggestions
@@ -86,7 +88,17 @@ def data_template(name: str | Path) -> DataTemplate:
     >>> data_template("drying").header
     'time [s],friction_coefficient [1]'
     """
-    spec = load_model(name)
+    return template_of(load_model(name))
+
+
+def joint_templates(name: str | Path) -> dict[str, DataTemplate]:
+    """Columns that the data of each experiment of a model need, by its name."""
+    spec = load_joint_model(name)
+    return {experiment: template_of(experiment_of(spec, experiment)) for experiment in spec.experiments}
+
+
+def template_of(spec: ModelSpec) -> DataTemplate:
+    """Columns that the data of a validated model need."""
     forward = forward_model(spec.forward, f"{spec.path}: forward")
     notes: list[str] = []
     labels = [

@@ -1,7 +1,8 @@
 """One self-contained HTML page about a fit: what was learnt and what was not."""
 
 from skinbayes.report.digest import digest
+from skinbayes.report.joint_page import joint_digest, joint_remarks
 from skinbayes.report.page import write_report
 from skinbayes.report.remarks import remarks
 
-__all__ = ["digest", "remarks", "write_report"]
+__all__ = ["digest", "joint_digest", "joint_remarks", "remarks", "write_report"]

@@ -17,12 +17,13 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 
-def digest(fit: Fit) -> dict[str, Any]:
+def digest(fit: Fit, with_priors: bool = True) -> dict[str, Any]:
     """The findings about a fit as plain types.
 
     Parameters
     ----------
     fit : any fit
+    with_priors : False leaves out ``prior_sensitivity``
 
     Returns
     -------
@@ -38,7 +39,7 @@ def digest(fit: Fit) -> dict[str, Any]:
     """
     names = row_names(fit)
     return {
-        "prior_sensitivity": brief_sensitivity(fit),
+        **({"prior_sensitivity": brief_sensitivity(fit)} if with_priors else {}),
         "validity": {flag.name: flag.to_dict(names) for flag in flags(fit)},
         "groups": {finding.column: finding.to_dict() for finding in group_findings(fit)},
         "discrepancy": {finding.column: finding.to_dict() for finding in discrepancy_findings(fit)},

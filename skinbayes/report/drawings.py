@@ -94,7 +94,7 @@ def drawings(fit: Fit) -> list[Drawing]:
             if problem is None
             else [*_by_level(fit, problem), *_curves(problem), *_residuals(fit, problem)]
         ),
-        *_sampled(),
+        *sampled(),
         *([] if "weighted_posterior" in fit.groups else [TRACE]),  # draws with weights have no order in time
     ]
 
@@ -142,7 +142,8 @@ TRACE = Drawing(
 )  # fmt: skip
 
 
-def _sampled() -> list[Drawing]:
+def sampled() -> list[Drawing]:
+    """Figures of the parameters."""
     return [
         Drawing(
             "prior-posterior", plot_prior_posterior, "Prior against posterior",

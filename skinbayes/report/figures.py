@@ -36,10 +36,11 @@ NARROW = "84 mm"
 
 def pictures(fit: Fit) -> dict[str, dict[str, Any]]:
     """All figures of a page by key, in its order: texts of the drawing, images for screens and for phones."""
-    return {drawing.key: _picture(fit, drawing) for drawing in drawings(fit)}
+    return {drawing.key: picture(fit, drawing) for drawing in drawings(fit)}
 
 
-def _picture(fit: Fit, drawing: Drawing) -> dict[str, Any]:
+def picture(fit: Fit, drawing: Drawing) -> dict[str, Any]:
+    """Texts of a drawing and its images for screens and for phones."""
     wide = drawing.draw(fit, width=None)
     return vars(drawing) | {
         "alternative": drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}",

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import cannot_write
+from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.predicted import observed_values
 from skinbayes.report import opening, quality, sentences, tables
 from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
+from skinbayes.report.joint_page import joint_context
 from skinbayes.report.markup import links, symbols
+from skinbayes.report.origin import data_origin
 from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.sensitivity import EXPLAINED, HEADERS, page_sensitivity
 from skinbayes.report.validity import validity_sentences
@@ -20,10 +24,16 @@ from skinbayes.report.validity import validity_sentences
 if TYPE_CHECKING:
     from skinbayes.comparison import AgainstBaselines
     from skinbayes.fit import Fit
+    from skinbayes.fit.left_out import LeftOutExperiment
     from skinbayes.problem.check import CheckReport
 
 
-def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None = None) -> Path:
+def write_report(
+    fit: Fit | JointFit,
+    path: Path,
+    baseline_models: AgainstBaselines | None = None,
+    left_out: Sequence[LeftOutExperiment] | None = None,
+) -> Path:
     """Write one self-contained HTML page about a fit.
 
     Figures are inside the page; nothing is loaded from anywhere and no script runs. Everything that comes from data
@@ -31,9 +41,11 @@ def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None 
 
     Parameters
     ----------
-    fit : any fit; without its problem the page has neither the curves of the model nor the check of what data can tell
+    fit : any fit, of one experiment or several; without its problem the page has neither the curves of the model nor the check
+        of what data can tell
     path : the file to write
     baseline_models : the fit beside its baseline models, from :func:`skinbayes.comparison.against_baselines`, if there are any
+    left_out : of several experiments, what :meth:`skinbayes.JointFit.left_out` found; from weights alone if omitted
 
     Returns
     -------
@@ -48,7 +60,7 @@ def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None 
         The disk is full.
     """
     path = Path(path)
-    page = render(fit, baseline_models)
+    page = render(fit, baseline_models, left_out)
     try:
         write_atomically(path, page.encode())
     except OSError as error:
@@ -56,7 +68,11 @@ def write_report(fit: Fit, path: Path, baseline_models: AgainstBaselines | None 
     return path
 
 
-def render(fit: Fit, baseline_models: AgainstBaselines | None = None) -> str:
+def render(
+    fit: Fit | JointFit,
+    baseline_models: AgainstBaselines | None = None,
+    left_out: Sequence[LeftOutExperiment] | None = None,
+) -> str:
     """The page as text."""
     import jinja2
 
@@ -73,6 +89,10 @@ def render(fit: Fit, baseline_models: AgainstBaselines | None = None) -> str:
         "symbols": lambda text: safe(symbols(text)),
         "links": lambda text: safe(links(text)),
     }
+    if isinstance(fit, JointFit):
+        return environment.get_template("joint.html").render(
+            joint_context(fit, fit.left_out() if left_out is None else left_out)
+        )
     return environment.get_template("page.html").render(context(fit, baseline_models))
 
 
@@ -187,28 +207,3 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
     else:
         said += [sentences.with_symbols(fit, sentence) for sentence in check.predictions]
     return said
-
-
-def data_origin(fit: Fit) -> dict[str, Any]:
-    """Where the data come from; what a file without provenance does not say is empty."""
-    known = fit.provenance["data"]
-    origin = known.get("origin", {})
-    texts = (
-        "title",
-        "licence",
-        "attribution",
-        "where",
-        "how_read",
-        "digitised_by",
-        "transformation",
-        "spread",
-    )
-    return {
-        "key": opening.data_name(fit),
-        "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
-        "sha256": str(known.get("sha256", "")),
-        **{name: str(origin.get(name) or "") for name in texts},
-        "doi": [str(doi) for doi in origin.get("doi", [])],
-        "authors": ", ".join(origin.get("authors", [])),
-        "caveats": list(origin.get("caveats", [])),
-    }

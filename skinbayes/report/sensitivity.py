@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from skinbayes.fit import Fit
+    from skinbayes.fit import Fit, JointFit
     from skinbayes.fit.prior_sensitivity import ChangedPrior, PriorSensitivity
 
 HEADERS = (
@@ -49,7 +49,7 @@ def sensitivity_rows(found: PriorSensitivity) -> list[list[str]]:
     return rows
 
 
-def page_sensitivity(fit: Fit) -> tuple[list[list[str]], list[str]]:
+def page_sensitivity(fit: Fit | JointFit) -> tuple[list[list[str]], list[str]]:
     """Table and sentences of a fit without anything sampled anew; empty if its model or data are gone."""
     if fit.problem is None:
         return [], []
@@ -57,7 +57,7 @@ def page_sensitivity(fit: Fit) -> tuple[list[list[str]], list[str]]:
     return sensitivity_rows(found), found.sentences()
 
 
-def brief_sensitivity(fit: Fit) -> dict[str, Any] | None:
+def brief_sensitivity(fit: Fit | JointFit) -> dict[str, Any] | None:
     """The same for machines, without what the prior of one parameter does to others; None if model or data are gone."""
     if fit.problem is None:
         return None

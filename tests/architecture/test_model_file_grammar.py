@@ -62,7 +62,9 @@ def test_keys(block: type[BaseModel]) -> None:
 
 
 def test_every_block_of_the_grammar_is_above() -> None:
-    assert {name for name in vars(modelschema) if name.endswith("Block")} == {b.__name__ for b in SECTION_OF}
+    several = {"ExperimentBlock", "JointBlock"}  # of docs/several-experiments.md
+    found = {name for name in vars(modelschema) if name.endswith("Block")}
+    assert found - several == {b.__name__ for b in SECTION_OF}
 
 
 def test_priors() -> None:

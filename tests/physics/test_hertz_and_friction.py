@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from skinbayes.contact import reduced_modulus, sphere_contact
+from skinbayes.contact import reduced_modulus, sphere_contact, sphere_force
 from skinbayes.friction import friction_coefficient
 
 
@@ -34,6 +34,21 @@ def test_pressure_distribution_carries_the_load_and_displaces_by_the_indentation
     # and at the edge of the contact the sphere is a²/(2R) higher
     assert contact.indentation - a**2 / (2 * radius) == pytest.approx(a**2 / (2 * radius), rel=1e-12)
     assert contact.mean_pressure == pytest.approx(force / (np.pi * a**2), rel=1e-12)
+
+
+def test_force_at_a_depth_is_the_load_that_makes_it_and_close_to_that_of_an_exact_sphere():
+    force = np.array([1e-9, 0.02, 3.0])
+    depth = sphere_contact(force, 8e-3, reduced_modulus=2.7e4).indentation
+    np.testing.assert_allclose(sphere_force(depth, 8e-3, reduced_modulus=2.7e4), force, rtol=1e-14)
+    # Sneddon's sphere in units of R and E*, by its contact radius a
+    for a, error in ((0.1, 1.0e-3), (0.3, 9.4e-3), (0.5, 2.83e-2)):
+        ends = np.log((1 + a) / (1 - a))
+        exact = (a * a + 1) / 2 * ends - a
+        assert sphere_force(a / 2 * ends, 1.0, reduced_modulus=1.0) / exact - 1 == pytest.approx(
+            error, rel=0.01
+        )
+    impossible = sphere_force([-1.0, 1.0, 1.0], [1.0, 0.0, 1.0], reduced_modulus=[1.0, 1.0, -1.0])
+    assert np.isnan(impossible).all()
 
 
 def test_scaling_and_shapes():
