@@ -107,9 +107,9 @@ def load_joint_fit(path: str | Path) -> JointFit:
     >>> problem = sb.build_joint_problem(
     ...     {"left": one, "right": one}, parameters={"typical_friction_coefficient": {"uniform": [0, 2]}}
     ... )
-    >>> fit = sb.JointFit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 100))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     again = load_joint_fit(fit.save(pathlib.Path(folder) / "fit.nc"))
+    ...     fit = sb.sample(problem, seed=1, ess=100, directory=pathlib.Path(folder) / "run")
+    ...     again = load_joint_fit(pathlib.Path(folder) / "run")
     >>> np.array_equal(again.theta(), fit.theta())
     True
     """

@@ -131,8 +131,13 @@ def public_definitions(floors: tuple[str, ...]) -> Iterator[tuple[str, Definitio
                 yield from _definitions(node, module)
 
 
+def _is_overload(node: Definition) -> bool:
+    """Whether it only states types of the definition that follows."""
+    return any(isinstance(one, ast.Name) and one.id == "overload" for one in node.decorator_list)
+
+
 def _definitions(node: ast.AST, prefix: str) -> Iterator[tuple[str, Definition]]:
-    if isinstance(node, Definition) and is_public(node.name):
+    if isinstance(node, Definition) and is_public(node.name) and not _is_overload(node):
         yield f"{prefix}.{node.name}", node
         if isinstance(node, ast.ClassDef):
             for member in node.body:
