@@ -22,7 +22,7 @@ TERMS = 6
 _SKIPPED = 12  # of the slowest speeds of a smooth cylinder: thinner than cells resolve; each output is a power of λ there
 _CELLS = 500
 _STEPS = 8  # of Newton's iteration for a speed
-_SHIFTS, _STRETCHES = (-4.0, 0.6), (0.25, 1.5)
+_STRETCHES = 0.3, 1.3
 _LATEST = 0.5  # speed by which load fractions may still differ
 _LEAST_ODDS = 1e-12  # of the load that the liquid carries
 
@@ -97,38 +97,38 @@ def whole_drag(outputs: FloatArray, log_number: FloatArray) -> FloatArray:
     return found
 
 
-def point_anchors(
-    outputs: FloatArray, log_number: FloatArray, wanted: tuple[float, float], line: FloatArray
+def similar_speeds(
+    point: FloatArray, speeds: FloatArray, line: FloatArray, places: FloatArray, wanted: tuple[float, float]
 ) -> FloatArray:
-    """ln λ at which asperities carry two fractions of the load of a ball: the first, and the distance of the second.
+    """Speeds of balls at which asperities carry what they carry under their cylinders: ``shift + stretch × speed``.
 
     Parameters
     ----------
-    outputs : of M balls, shape ``(M, 6, K)``
-    log_number : ln λ, rising, dimensionless, shape ``(M, K)``
-    wanted : the two load fractions, dimensionless
-    line : the same two numbers of the cylinders, shape ``(M, 2)``; a ball too far from them is left there
+    point : outputs of M balls, shape ``(M, 6, K)``, at K speeds, in the unit of each material, dimensionless
+    speeds : these speeds, rising, dimensionless, shape ``(K,)``
+    line, places : those of the cylinders, shape ``(M, 6, S)``, at S speeds, shape ``(S,)``
+    wanted : two load fractions that are carried at similar speeds, dimensionless
 
     Returns
     -------
-    anchors : dimensionless, shape ``(M, 2)``
+    similar : shift and stretch, dimensionless, shape ``(M, 2)``
     """
-    found = np.empty_like(line)
     odds = np.log(np.array(wanted)) - np.log1p(-np.array(wanted))
-    for row, (one, places) in enumerate(zip(outputs, log_number, strict=True)):
-        half, faint = _Continued(places, log_odds(one[FRACTION])).place_of(odds)
-        found[row] = half, faint - half
-    found[:, 0] = line[:, 0] + np.clip(found[:, 0] - line[:, 0], *_SHIFTS)
-    found[:, 1] = line[:, 1] * np.clip(found[:, 1] / line[:, 1], *_STRETCHES)
+    found = np.empty((len(point), 2))
+    for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
+        first, second = _Continued(speeds, log_odds(of_ball[FRACTION])).place_of(odds)
+        begin, end = _Continued(places, log_odds(of_cylinder[FRACTION])).place_of(odds)
+        stretch = np.clip((second - first) / (end - begin), *_STRETCHES)
+        found[row] = first - stretch * begin, stretch
     return found
 
 
 def correction(point: FloatArray, line: FloatArray, speeds: FloatArray, places: FloatArray) -> FloatArray:
     """What a ball has beyond its cylinder, shape ``(M, 6, K)``; smooth in everything.
 
-    Both are compared at the same speed, counted from where asperities carry half of the load of each, which for a ball is about
-    1.25 times that for its cylinder. What is left of the difference of load fractions, which fall by many powers of ten, is
-    again one of speeds; the boundary term is compared by its ratio to the load fraction, the same wherever A ∝ p.
+    Both are compared at similar speeds (`similar_speeds`), for a ball about 1.25 times that of its cylinder. What is left of the
+    difference of load fractions, which fall by many powers of ten, is again one of speeds; the boundary term is compared by
+    its ratio to the load fraction, the same wherever A ∝ p.
 
     Parameters
     ----------

@@ -22,8 +22,8 @@ from skinbayes.lubrication.film_point import (
     correction,
     end_coordinate,
     log_end,
-    point_anchors,
     relative_outputs,
+    similar_speeds,
     smooth_point_films,
     whole_drag,
 )
@@ -114,11 +114,12 @@ def build_film_table(
         else:
             outputs = relative_outputs(whole_drag(outputs, numbers), numbers, _with_whole_drag(smooth))
             ends = _ends_of(plan)
-            addition, smooth, ball_anchors = _correction(plan, solve, point_places, anchor_terms, grid, ends)
+            addition, smooth, similar = _correction(plan, solve, point_places, anchor_terms, grid, ends)
             shape = _corrected_at(axes.counts)
-            terms = grid_coefficients(ball_anchors.reshape(*shape, 2), ends=False)
-            more = [(0, count - size) for count, size in zip(axes.counts, shape, strict=True)]
-            anchor_terms = anchor_terms + np.pad(terms, [*more, (0, 0)])
+            terms = grid_coefficients(similar.reshape(*shape, 2), ends=False)
+            shift, stretch = summed(terms, list(places.T[:, :, None]), len(places))[:, 0].T
+            at_nodes = np.stack([at_nodes[:, 0] + at_nodes[:, 1] * shift, at_nodes[:, 1] * stretch], axis=1)
+            anchor_terms = grid_coefficients(at_nodes.reshape(*axes.counts, 2), ends=False)
             addition = CubicSpline(grid[::_EVERY], addition, axis=-1)(grid)
             terms = grid_coefficients(addition.reshape(*shape, -1), ends=False)
             there = summed(terms, list(places.T[:, :, None]), len(places))[:, 0]
@@ -190,8 +191,8 @@ def _correction(
     grid: FloatArray,
     ends: tuple[float, float],
 ) -> tuple[FloatArray, SmoothFilms, FloatArray]:
-    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, the smooth films, and what anchors
-    differ by, shape ``(M, 2)``.
+    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, the smooth films, and the similar
+    speeds, shape ``(M, 2)``.
     """
     line_anchors = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
     parameters = plan.axes.representative(places)
@@ -202,17 +203,18 @@ def _correction(
         return solve(stage, outputs, zip(balls, log_numbers, strict=True))
 
     rough = line_anchors[:, :1] + line_anchors[:, 1:] * _ANCHOR_SPEEDS
-    roughly = solved("anchors of balls", rough, POINT, _ANCHOR_CELLS)
-    anchors = point_anchors(roughly, rough, (HALF, FAINT), line_anchors)
+    roughly = solved("balls on few cells", rough, POINT, _ANCHOR_CELLS)
     numbers = line_anchors[:, :1] + line_anchors[:, 1:] * grid
-    few = anchors[:, :1] + anchors[:, 1:] * grid[::_EVERY]
     line = solved("cylinders of balls", numbers, LINE, plan.cells)
+    similar = similar_speeds(roughly, _ANCHOR_SPEEDS, line, grid, (HALF, FAINT))
+    there = similar[:, :1] + similar[:, 1:] * grid[::_EVERY]
+    few = line_anchors[:, :1] + line_anchors[:, 1:] * there
     point = solved("balls", few, POINT, plan.cells)
     smooth = smooth_point_films(*ends)
     end = end_coordinate(log_end(film_scales(list(parameters.T), plan.poisson_ratio_bulk).strain), *ends)
     point = relative_outputs(point, few, smooth, end)
     line = relative_outputs(whole_drag(line, numbers), numbers, _with_whole_drag(smooth_films()))
-    return correction(point, line, grid[::_EVERY], grid), smooth, anchors - line_anchors
+    return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 
 def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
