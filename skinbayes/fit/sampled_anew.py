@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from skinbayes.problem import Problem
+    from skinbayes.problem import JointProblem, Problem
 
 SAMPLE_SIZE = 1000.0
 """Effective sample size in every parameter unless told otherwise."""
@@ -39,7 +39,9 @@ class SampledAnew:
     ess: float
 
 
-def sampled_anew(problem: Problem, *, seed: int, max_steps: int, ess: float = SAMPLE_SIZE) -> SampledAnew:
+def sampled_anew(
+    problem: Problem | JointProblem, *, seed: int, max_steps: int, ess: float = SAMPLE_SIZE
+) -> SampledAnew:
     """Sample a problem as a fit of default options does, without a run of its own on disk.
 
     Parameters

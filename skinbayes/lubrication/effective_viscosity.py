@@ -48,11 +48,11 @@ def stribeck_curve_of_liquid(
     sphere_radius: float,
     spectrum: PowerSpectrum,
     skin: ElasticSolid,
+    contact: str = POINT,
     frictional_shear_stress: float,
     area_correction: float = AREA_CORRECTION,
     velocity_shift_factor: float = 1.0,
     flow_factors: FlowFactors | None = None,
-    contact: str = POINT,
     nodes: int = NODES,
     cells: int = CELLS,
     thickest_film: float = THICKEST_FILM,
@@ -71,11 +71,11 @@ def stribeck_curve_of_liquid(
     sphere_radius : R, m, > 0
     spectrum : power spectrum, C in m^4, one surface
     skin : moduli in Pa, thickness in m, one skin
+    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     frictional_shear_stress : σ_f, Pa, ≥ 0
     area_correction : γ, dimensionless, 0 < γ ≤ 1
     velocity_shift_factor : a, dimensionless, > 0; the shear rate is that of the speed without it
     flow_factors : of the flow between rough surfaces; None for trivial ones
-    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     nodes : number of places across a line contact, dimensionless
     cells : number of cells of half a point contact, dimensionless
     thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted

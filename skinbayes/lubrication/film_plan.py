@@ -47,12 +47,12 @@ class FilmTablePlan:
         equal for a fixed one
     spectrum : power spectrum of one surface, C in m^4; its shape counts, the rms height comes from the ranges
     poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless; ν1 is that of a homogeneous solid
+    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     area_correction : γ, dimensionless, 0 < γ ≤ 1
     counts : nodes of an axis, dimensionless, by its name; see `film_axes`
     speeds : number of speeds, dimensionless
     nodes : places across the contact, dimensionless; with 96 friction is within 0.2 % of that on many more
     checked : number of random places, dimensionless, at which the table is compared with direct solutions
-    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     cells : of half a point contact, dimensionless
     largest_strain : b/Rc, dimensionless, that the table has to reach
 
@@ -74,12 +74,12 @@ class FilmTablePlan:
     spectrum: PowerSpectrum
     poisson_ratio_layer: float = 0.5
     poisson_ratio_bulk: float = 0.5
+    contact: str = POINT
     area_correction: float = AREA_CORRECTION
     counts: Mapping[str, int] | None = None
     speeds: int = 31
     nodes: int = 96
     checked: int = 120
-    contact: str = POINT
     cells: int = 400
     largest_strain: float = LARGEST_STRAIN
 

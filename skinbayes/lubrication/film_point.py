@@ -22,6 +22,8 @@ TERMS = 6
 _SKIPPED = 12  # of the slowest speeds of a smooth cylinder: thinner than cells resolve; each output is a power of λ there
 _CELLS = 500
 _STEPS = 8  # of Newton's iteration for a speed
+_STRETCHES = 0.3, 1.3
+_LATEST = 0.5  # speed by which load fractions may still differ
 _LEAST_ODDS = 1e-12  # of the load that the liquid carries
 
 
@@ -95,27 +97,53 @@ def whole_drag(outputs: FloatArray, log_number: FloatArray) -> FloatArray:
     return found
 
 
+def similar_speeds(
+    point: FloatArray, speeds: FloatArray, line: FloatArray, places: FloatArray, wanted: tuple[float, float]
+) -> FloatArray:
+    """Speeds of balls at which asperities carry what they carry under their cylinders: ``shift + stretch × speed``.
+
+    Parameters
+    ----------
+    point : outputs of M balls, shape ``(M, 6, K)``, at K speeds, in the unit of each material, dimensionless
+    speeds : these speeds, rising, dimensionless, shape ``(K,)``
+    line, places : those of the cylinders, shape ``(M, 6, S)``, at S speeds, shape ``(S,)``
+    wanted : two load fractions that are carried at similar speeds, dimensionless
+
+    Returns
+    -------
+    similar : shift and stretch, dimensionless, shape ``(M, 2)``
+    """
+    odds = np.log(np.array(wanted)) - np.log1p(-np.array(wanted))
+    found = np.empty((len(point), 2))
+    for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
+        first, second = _Continued(speeds, log_odds(of_ball[FRACTION])).place_of(odds)
+        begin, end = _Continued(places, log_odds(of_cylinder[FRACTION])).place_of(odds)
+        stretch = np.clip((second - first) / (end - begin), *_STRETCHES)
+        found[row] = first - stretch * begin, stretch
+    return found
+
+
 def correction(point: FloatArray, line: FloatArray, speeds: FloatArray, places: FloatArray) -> FloatArray:
     """What a ball has beyond its cylinder, shape ``(M, 6, K)``; smooth in everything.
 
-    Asperities carry under the ball what they carry under its cylinder at a lower speed. The load fraction is compared by
-    the speed, because it falls by many powers of ten, and the boundary term by its ratio to the load fraction at the speeds
-    that belong together, which is the same wherever A ∝ p.
+    Both are compared at similar speeds (`similar_speeds`), for a ball about 1.25 times that of its cylinder. What is left of the
+    difference of load fractions, which fall by many powers of ten, is again one of speeds; the boundary term is compared by
+    its ratio to the load fraction, the same wherever A ∝ p.
 
     Parameters
     ----------
     point : relative outputs of M balls, shape ``(M, 6, K)``
     line : those of their cylinders, at all speeds of a table, shape ``(M, 6, S)``
-    speeds : K speeds, in the unit of the material, dimensionless
+    speeds : K speeds, in the unit of each material, dimensionless
     places : S speeds, likewise, rising
     """
     found = point - line[:, :, np.searchsorted(places, speeds - 1e-9)]
     for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
         odds = _Continued(places, log_odds(of_cylinder[FRACTION]))
-        lower = odds.place_of(log_odds(of_ball[FRACTION]))
+        later = np.clip(speeds - odds.place_of(log_odds(of_ball[FRACTION])), -_LATEST, _LATEST)
         ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])
-        found[row, FRACTION] = speeds - lower
-        found[row, BOUNDARY] = of_ball[BOUNDARY] - of_ball[FRACTION] - ratio(lower)
+        found[row, FRACTION] = later
+        found[row, BOUNDARY] = of_ball[BOUNDARY] - of_ball[FRACTION] - ratio(speeds - later)
     return found
 
 
@@ -123,9 +151,9 @@ def corrected(line: FloatArray, addition: FloatArray, places: FloatArray) -> Flo
     """Relative outputs of balls, shape ``(M, 6, S)``, from those of their cylinders and the `correction` at the S speeds."""
     found = line + addition
     for row, of_cylinder in enumerate(line):
-        lower = places - addition[row, FRACTION]
-        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))(lower)
-        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])(lower)
+        earlier = places - addition[row, FRACTION]
+        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))(earlier)
+        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])(earlier)
         found[row, FRACTION] = -np.logaddexp(0.0, -odds)
         found[row, BOUNDARY] = found[row, FRACTION] + ratio + addition[row, BOUNDARY]
     return found

@@ -38,10 +38,10 @@ class FilmTable:
     ----------
     axes : what varies, and within which ranges
     poisson_ratio_bulk : ν1, dimensionless
+    contact : "point" or "line"
     coefficients : dimensionless, shape ``(n1, …, nA, 2 + 6 (S + 2))``; Chebyshev coefficients along the axes of the
         anchors and of the B-spline coefficients of the six outputs
     speeds : S, number of speeds, dimensionless
-    contact : "point" or "line"
     end_low, end_high : ln of the smallest and largest radius over that of the contact at which the drag of a ball ends,
         dimensionless; 0 of a line contact
     smooth : films of the smooth ball, which the outputs but the boundary term and the load fraction are relative to
@@ -52,9 +52,9 @@ class FilmTable:
 
     axes: FilmAxes
     poisson_ratio_bulk: float
+    contact: str
     coefficients: FloatArray
     speeds: int
-    contact: str
     end_low: float
     end_high: float
     smooth: SmoothFilms

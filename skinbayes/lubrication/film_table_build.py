@@ -23,11 +23,12 @@ from skinbayes.lubrication.film_point import (
     end_coordinate,
     log_end,
     relative_outputs,
+    similar_speeds,
     smooth_point_films,
     whole_drag,
 )
 from skinbayes.lubrication.film_reference import SmoothFilms, smooth_films
-from skinbayes.lubrication.film_sweeps import Ball
+from skinbayes.lubrication.film_sweeps import FAINT, HALF, Ball
 from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
 from skinbayes.lubrication.point_film import CELLS
@@ -39,6 +40,7 @@ _ANCHOR_COUNT = (
 _CHECK_NODES, _CHECK_CELLS = 128, 600
 _EVERY = 2  # of the speeds at which the cylinder is solved, the ball is, too
 _CORRECTED = 0.5  # nodes at which the ball is solved, over those at which its cylinder is
+_ANCHOR_SPEEDS, _ANCHOR_CELLS = np.linspace(-1.6, 1.4, 13), 150
 _SPARE = 1e-3  # of ln, beyond the ends of the drag
 
 
@@ -91,7 +93,7 @@ def build_film_table(
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
     sweeps = len(places) + len(coarse_places) + plan.checked
     point_places = _nodes_of(_corrected_at(axes.counts)) if plan.contact == POINT else np.empty((0, 0))
-    sweeps += 2 * len(point_places)
+    sweeps += 3 * len(point_places)
 
     with Tasks(processes, sweeps, progress, kept) as solve:
         balls = (plan.ball(axes.representative(place)) for place in coarse_places)
@@ -112,10 +114,14 @@ def build_film_table(
         else:
             outputs = relative_outputs(whole_drag(outputs, numbers), numbers, _with_whole_drag(smooth))
             ends = _ends_of(plan)
-            few = grid[::_EVERY]
-            addition, smooth = _correction(plan, solve, point_places, anchor_terms, grid, ends)
-            addition = CubicSpline(few, addition, axis=-1)(grid)
-            terms = grid_coefficients(addition.reshape(*_corrected_at(axes.counts), -1), ends=False)
+            addition, smooth, similar = _correction(plan, solve, point_places, anchor_terms, grid, ends)
+            shape = _corrected_at(axes.counts)
+            terms = grid_coefficients(similar.reshape(*shape, 2), ends=False)
+            shift, stretch = summed(terms, list(places.T[:, :, None]), len(places))[:, 0].T
+            at_nodes = np.stack([at_nodes[:, 0] + at_nodes[:, 1] * shift, at_nodes[:, 1] * stretch], axis=1)
+            anchor_terms = grid_coefficients(at_nodes.reshape(*axes.counts, 2), ends=False)
+            addition = CubicSpline(grid[::_EVERY], addition, axis=-1)(grid)
+            terms = grid_coefficients(addition.reshape(*shape, -1), ends=False)
             there = summed(terms, list(places.T[:, :, None]), len(places))[:, 0]
             outputs = corrected(outputs, there.reshape(outputs.shape), grid)
         splines = spline_coefficients(outputs)
@@ -184,22 +190,31 @@ def _correction(
     anchor_terms: FloatArray,
     grid: FloatArray,
     ends: tuple[float, float],
-) -> tuple[FloatArray, SmoothFilms]:
-    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, and the smooth films."""
-    at_nodes = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
-    numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
-    few = numbers[:, ::_EVERY]
+) -> tuple[FloatArray, SmoothFilms, FloatArray]:
+    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, the smooth films, and the similar
+    speeds, shape ``(M, 2)``.
+    """
+    line_anchors = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
     parameters = plan.axes.representative(places)
-    found = {}
-    for contact, at in ((LINE, numbers), (POINT, few)):
+
+    def solved(stage: str, log_numbers: FloatArray, contact: str, cells: int) -> FloatArray:
         balls = (plan.ball(one) for one in parameters)
-        outputs = partial(_outputs, nodes=plan.nodes, contact=contact, cells=plan.cells)
-        found[contact] = solve(f"{contact} for the correction", outputs, zip(balls, at, strict=True))
+        outputs = partial(_outputs, nodes=plan.nodes, contact=contact, cells=cells)
+        return solve(stage, outputs, zip(balls, log_numbers, strict=True))
+
+    rough = line_anchors[:, :1] + line_anchors[:, 1:] * _ANCHOR_SPEEDS
+    roughly = solved("balls on few cells", rough, POINT, _ANCHOR_CELLS)
+    numbers = line_anchors[:, :1] + line_anchors[:, 1:] * grid
+    line = solved("cylinders of balls", numbers, LINE, plan.cells)
+    similar = similar_speeds(roughly, _ANCHOR_SPEEDS, line, grid, (HALF, FAINT))
+    there = similar[:, :1] + similar[:, 1:] * grid[::_EVERY]
+    few = line_anchors[:, :1] + line_anchors[:, 1:] * there
+    point = solved("balls", few, POINT, plan.cells)
     smooth = smooth_point_films(*ends)
     end = end_coordinate(log_end(film_scales(list(parameters.T), plan.poisson_ratio_bulk).strain), *ends)
-    point = relative_outputs(found[POINT], few, smooth, end)
-    line = relative_outputs(whole_drag(found[LINE], numbers), numbers, _with_whole_drag(smooth_films()))
-    return correction(point, line, grid[::_EVERY], grid), smooth
+    point = relative_outputs(point, few, smooth, end)
+    line = relative_outputs(whole_drag(line, numbers), numbers, _with_whole_drag(smooth_films()))
+    return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 
 def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:

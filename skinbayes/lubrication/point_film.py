@@ -51,13 +51,13 @@ class LubricatedPointFilms(NamedTuple):
     separation : mean separation ū, m, shape ``(K, n)``
     fluid_pressure : p_f, Pa, shape ``(K, n)``
     asperity_pressure : p_a, Pa, shape ``(K, n)``
-    load_weight : area of the cells with their mirror images, m², shape ``(K, n)``: weights that integrate over the plane
     couette : friction coefficient of the shear flow, ∫φ ηv/u dA/F_N, dimensionless, shape ``(K,)``
     pressure_flow : friction coefficient of the pressure flow, ½∫u ∂p_f/∂x dA/F_N, dimensionless, shape ``(K,)``
     asperity_load_fraction : load carried by asperities over load, dimensionless, shape ``(K,)``
     minimum_film : smallest ū, m, shape ``(K,)``
     central_film : ū under the middle of the ball, m, shape ``(K,)``
     lubrication_number : λ = 6 η v R²/(a³ p_H), dimensionless, shape ``(K,)``
+    load_weight : area of the cells with their mirror images, m², shape ``(K, n)``: weights that integrate over the plane
     """
 
     position: FloatArray
@@ -65,13 +65,13 @@ class LubricatedPointFilms(NamedTuple):
     separation: FloatArray
     fluid_pressure: FloatArray
     asperity_pressure: FloatArray
-    load_weight: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
     asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
     lubrication_number: FloatArray
+    load_weight: FloatArray
 
 
 @np.errstate(all="ignore")
@@ -175,8 +175,12 @@ def lubricated_point_films(
 
 def _nothing(rows: int, cells: int) -> LubricatedPointFilms:
     """Films of which nothing is known."""
-    resolved = [np.full((rows, cells), np.nan) for _ in range(6)]
-    return LubricatedPointFilms(*resolved, *(np.full(rows, np.nan) for _ in range(6)))
+    resolved = np.full((6, rows, cells), np.nan)
+    numbers = np.full((6, rows), np.nan)
+    return LubricatedPointFilms(
+        resolved[0], resolved[1], resolved[2], resolved[3], resolved[4],
+        numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], resolved[5],
+    )  # fmt: skip
 
 
 def point_sweeps(
@@ -230,7 +234,7 @@ def grid_of(number: FloatArray, rough: float, tail: float, *, end: float, cells:
     smallest, largest = float(number.min()), float(number.max())
     reach = max(_SHORTEST_REACH, 1.1 * end, 3 + 6 * np.sqrt(tail), 12 * largest)
     thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
-    edge = float(np.clip(2.4 * thinnest ** (2 / 3), 0.05, 0.15))
+    edge = float(np.clip(2.4 * thinnest ** (2 / 3), 0.03, 0.15))
     if smallest > _WIDE:
         edge = max(edge, _PART_OF_WIDTH * smallest)
     return point_grid(_rings(cells), _rays(cells), edge, float(reach))

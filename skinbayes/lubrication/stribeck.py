@@ -112,12 +112,12 @@ def stribeck_curve(
     sphere_radius: ArrayLike,
     spectrum: PowerSpectrum,
     skin: ElasticSolid,
+    contact: str = POINT,
     frictional_shear_stress: ArrayLike,
     area_correction: ArrayLike = AREA_CORRECTION,
     velocity_shift_factor: ArrayLike = 1.0,
     flow_factors: FlowFactors | None = None,
     rheology: Rheology | None = None,
-    contact: str = POINT,
     nodes: int = NODES,
     cells: int = CELLS,
     thickest_film: float = THICKEST_FILM,
@@ -137,12 +137,12 @@ def stribeck_curve(
     sphere_radius : R, m, > 0, batch shape
     spectrum : power spectrum, C in m^4, batch shape
     skin : moduli in Pa, thickness in m, batch shape
+    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     frictional_shear_stress : σ_f, Pa, ≥ 0, batch shape
     area_correction : γ, dimensionless, 0 < γ ≤ 1, batch shape; 1 is plain Persson theory
     velocity_shift_factor : a, dimensionless, > 0, batch shape; the theory is evaluated at a ηv
     flow_factors : of the flow between rough surfaces; None for trivial ones, which the paper finds sufficient
     rheology : viscosity against shear rate v/u; None for a Newtonian liquid
-    contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     nodes : number of places across a line contact, dimensionless
     cells : number of cells of half a point contact, dimensionless
     thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
