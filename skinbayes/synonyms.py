@@ -16,7 +16,7 @@ _SYNONYMS = {
     "sphere_radius": "radius ball_radius probe_radius tip_radius indenter_radius sphere_r radius_of_curvature",
     "sliding_speed": "velocity speed sliding_velocity sliding_rate stroke_speed v_slide",
     "indentation_depth": "depth indentation displacement penetration penetration_depth indentation_displacement",
-    "indentation_force": "force load reaction_force indenter_force indentation_load",
+    "indentation_force": "reaction_force indenter_force indentation_load",
     "viscosity": "eta visc dynamic_viscosity shear_viscosity",
     "shear_rate": "gamma_dot gammadot strain_rate rate_of_shear",
     "speed_viscosity_product": "eta_v etav viscosity_speed_product viscosity_times_speed",

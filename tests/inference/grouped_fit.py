@@ -17,7 +17,9 @@ MEANING = "the contact is wider than half the radius of the ball"
 @cache
 def finger_fit() -> Fit:
     """The descriptive law on all 165 rows, sampled much too briefly."""
-    return sample(load_problem("finger-descriptive"), max_steps=100, ensembles=2, walkers=32)
+    return sample(
+        load_problem("finger-descriptive"), max_steps=100, ensembles=2, walkers=32, importance=False
+    )
 
 
 def with_effects(fit: Fit, column: str, centres: np.ndarray, width: float, scale: float) -> Fit:

@@ -250,9 +250,9 @@ def test_a_short_run_is_kept_and_says_so(tmp_path: Path) -> None:
     read = load_fit(run)
     assert not read.converged and read.provenance["sampling"]["missing"]
     # the same run, allowed more steps, is continued from where it stopped
-    more = sample(problem, seed=1, ess=6_000, directory=run, resume=True, importance=False)
+    more = sample(problem, seed=1, ess=20_000, directory=run, resume=True, importance=False)
     assert more.converged and more.provenance["sampling"]["steps"] > 200
-    same_draws(more, sample(problem, seed=1, ess=6_000, importance=False))
+    same_draws(more, sample(problem, seed=1, ess=20_000, importance=False))
 
 
 @pytest.mark.parametrize("options", [

@@ -189,7 +189,7 @@ def test_thinned_groups_say_which_draws_they_hold_and_loo_uses_those(
     plain = np.log(len(log_weight)) - logsumexp(log_weight, axis=0)
     found = [left_out_density(-column, 200).log_density for column in log_weight.T]
     assert_allclose(found, plain, rtol=1e-4, atol=1e-4)
-    prior = prior_groups(problem, np.random.default_rng(3), 100)
+    prior = prior_groups(problem, draws[:1], np.random.default_rng(3))
     assert "row" not in prior["prior"].dims
 
 

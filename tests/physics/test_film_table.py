@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -15,7 +16,6 @@ from skinbayes.lubrication import (
     FilmTable,
     LubricatedBalls,
     build_film_table,
-    film_sweeps,
     lubricated_films,
     tabulated_friction,
 )
@@ -251,7 +251,7 @@ def test_progress_and_processes():
 
 
 def test_films_that_are_not_found_end_the_build(monkeypatch):
-    solved = film_sweeps.lubricated_films
+    solved, solver = lubricated_films, import_module("skinbayes.lubrication.contact_films")
 
     def sometimes(*arguments, nodes, **options):
         films = solved(*arguments, nodes=nodes, **options)
@@ -260,13 +260,11 @@ def test_films_that_are_not_found_end_the_build(monkeypatch):
     ranges = {name: (low, low) for name, (low, _) in RANGES.items()}
     surface, options = named_surface("paper_reference"), {"speeds": 9, "checked": 0}
     whole = build_film_table(FilmTablePlan(ranges, spectrum=surface, **options))
-    monkeypatch.setattr(film_sweeps, "lubricated_films", sometimes)
+    monkeypatch.setattr(solver, "lubricated_films", sometimes)
     # with more nodes a film may be found
     again = build_film_table(FilmTablePlan(ranges, spectrum=surface, **options, nodes=84))
     assert np.abs(again.coefficients - whole.coefficients)[:10].max() < 0.1
-    monkeypatch.setattr(
-        film_sweeps, "lubricated_films", lambda *a, **o: solved(*a, **o)._replace(couette=np.nan)
-    )
+    monkeypatch.setattr(solver, "lubricated_films", lambda *a, **o: solved(*a, **o)._replace(couette=np.nan))
     with pytest.raises(InputError, match=r"No film was found for a cylinder of radius 0\.00453 m"):
         build_film_table(FilmTablePlan(ranges, spectrum=surface, **options))
 
