@@ -11,15 +11,16 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.fit.result import FitResult, JointResult
+from skinbayes.fit.sampled_anew import sampled_anew
 from skinbayes.problem import JointProblem, Problem
 from skinbayes.problem.other_priors import possible_range, priors_of, with_priors
-from skinbayes.sampling.draws import Draws, weighted_quantiles
+from skinbayes.sampling.draws import weighted_quantiles
 from skinbayes.statistics.priors import Prior
 from skinbayes.statistics.reweighting import quantile_errors, reweighted
 from skinbayes.statistics.widening import BOUNDED, LOGARITHMIC, factor_of_reach, widened
 
-REFIT_ESS, REFIT_STEPS = 1000.0, 1000
-"""Effective sample size of what is sampled anew, and steps after which that is given up."""
+REFIT_STEPS = 1000
+"""Steps after which sampling anew is given up."""
 
 EDGE = 0.02
 """Part of the range of a prior next to one of its ends, from which is guessed how much of the posterior would lie beyond."""
@@ -179,29 +180,13 @@ class OtherPriors:
 
     def _sampled(self, priors: tuple[Prior, ...]) -> _Weighted | None:
         """The posterior under other priors, sampled anew; None if that did not converge or fails."""
-        from skinbayes.sampling.ensemble_engine import EnsembleEngine
-        from skinbayes.sampling.options import SamplerOptions
-
-        problem = with_priors(self.problem, priors)
-        options = SamplerOptions(
-            seed=self._seed,
-            ess=REFIT_ESS,
-            expensive=problem.expensive,
-            max_steps=REFIT_STEPS,
-            importance=True,
-        )
         try:
-            problem.prepare()
-            draws = EnsembleEngine().run(problem.target(), options)
+            found = sampled_anew(with_priors(self.problem, priors), seed=self._seed, max_steps=REFIT_STEPS)
         except InputError:
             return None
-        if not draws.diagnostics["converged"]:
+        if not found.converged:
             return None
-        theta = problem.target().transform.inverse(draws.samples.reshape(-1, draws.dimension))
-        made = _Weighted(
-            theta, _log_weights(draws), priors, _correlation(draws.diagnostics, draws.log_weights is None, len(theta)),
-            evidence=draws.log_evidence,
-        )  # fmt: skip
+        made = _weighted(found.theta, found.log_weights, priors, found.evidence, [found.ess])
         back = self._from(made, self.priors, UnderOtherPriors())
         if back.reliable:
             return replace(made, change=-back.change, error=back.error)
@@ -253,25 +238,19 @@ def _own_draws(fit: FitResult | JointResult, priors: tuple[Prior, ...]) -> _Weig
     found: tuple[float, float] | None = None if evidence is None else (evidence[0], evidence[1])
     if (weighted := fit.groups.get("weighted_posterior")) is not None:
         theta = weighted["theta"].values.reshape(-1, len(priors))
-        log_weights = weighted["log_weight"].values.reshape(-1)
-        return _Weighted(
-            theta, log_weights, priors, _correlation(sampling, False, len(theta)), evidence=found
-        )
-    theta = fit.theta()
-    correlation = _correlation(sampling, True, len(theta))
-    return _Weighted(theta, np.zeros(len(theta)), priors, correlation, evidence=found)
+        return _weighted(theta, weighted["log_weight"].values.reshape(-1), priors, found)
+    return _weighted(fit.theta(), None, priors, found, sampling.get("ess_bulk", []))
 
 
-def _log_weights(draws: Draws) -> FloatArray:
-    if draws.log_weights is None:
-        return np.zeros(draws.samples.shape[0] * draws.samples.shape[1])
-    return draws.log_weights.reshape(-1)
-
-
-def _correlation(sampling: Mapping[str, object], equal: bool, count: int) -> float:
-    """Draws that one independent one is worth; those with weights are taken as independent."""
-    sizes = np.asarray(sampling.get("ess_bulk", []), dtype=float)
-    known = sizes[sizes > 0]
-    if not equal or not known.size:
-        return 1.0
-    return max(1.0, count / float(known.min()))
+def _weighted(
+    theta: FloatArray,
+    log_weights: FloatArray | None,
+    priors: tuple[Prior, ...],
+    evidence: tuple[float, float] | None,
+    sizes: Sequence[float] = (),
+) -> _Weighted:
+    """Draws with weights, which are independent, or of equal weight with the effective sample sizes of their parameters."""
+    if log_weights is not None:
+        return _Weighted(theta, log_weights, priors, evidence=evidence)
+    least = min((size for size in sizes if size > 0), default=len(theta))
+    return _Weighted(theta, np.zeros(len(theta)), priors, max(1.0, len(theta) / least), evidence=evidence)

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import expit, logsumexp
 
 from skinbayes.arrays import FloatArray
+from skinbayes.fit.sampled_anew import SAMPLE_SIZE, sampled_anew
 from skinbayes.problem.subsets import without_data
 
 if TYPE_CHECKING:
@@ -18,14 +19,8 @@ if TYPE_CHECKING:
 
     from skinbayes.problem import JointProblem, Problem
 
-REFIT_ESS = 1000.0
-"""Effective sample size of a refit unless told otherwise."""
-
 REFIT_STEPS = 4000
 """Steps after which a refit ends, converged or not: there may be many refits."""
-
-MOST_DRAWS = 4000
-"""Draws of a refit without weights that are looked at."""
 
 AGREEMENT = 5.0
 """Standard errors by which the bridge and the difference of two ln Z may differ; those of a bridge over a gap are rough."""
@@ -58,7 +53,7 @@ def predict_left_out(
     effective: float,
     evidence: tuple[float, float] | None = None,
     seed: int = 1,
-    ess: float = REFIT_ESS,
+    ess: float = SAMPLE_SIZE,
 ) -> Refit:
     """Sample the problem without some of its data, and score these.
 
@@ -76,31 +71,17 @@ def predict_left_out(
     seed : non-negative integer
     ess : effective sample size wanted in every parameter
     """
-    from skinbayes.sampling.ensemble_engine import EnsembleEngine
-    from skinbayes.sampling.options import SamplerOptions
-
     reduced = without_data(problem, keep)
-    target = reduced.target()
-    options = SamplerOptions(
-        seed=seed, ess=ess, max_steps=REFIT_STEPS, importance=True, expensive=problem.expensive
-    )
-    draws = EnsembleEngine().run(target, options)
-    weights = draws.log_weights
-    positions = (
-        draws.samples
-        if weights is not None
-        else draws.equally_weighted(MOST_DRAWS, np.random.default_rng(seed))
-    )
-    theta = target.transform.inverse(positions.reshape(-1, draws.dimension))
-    density = left_out_densities(problem, reduced, theta)
-    value, error = ratio_of_evidences(density, whole, None if weights is None else weights.ravel(), effective)
+    found = sampled_anew(reduced, seed=seed, max_steps=REFIT_STEPS, ess=ess)
+    density = left_out_densities(problem, reduced, found.theta)
+    value, error = ratio_of_evidences(density, whole, found.log_weights, effective)
     agree = True
-    if evidence is not None and draws.log_evidence is not None:
-        gap, its_error = evidence[0] - draws.log_evidence[0], hypot(evidence[1], draws.log_evidence[1])
+    if evidence is not None and found.evidence is not None:
+        gap, its_error = evidence[0] - found.evidence[0], hypot(evidence[1], found.evidence[1])
         agree = abs(gap - value) <= AGREEMENT * hypot(error, its_error)
         if its_error < error:
             value, error = gap, its_error
-    return Refit(value, error, bool(draws.diagnostics["converged"]) and agree)
+    return Refit(value, error, found.converged and agree)
 
 
 def left_out_densities(
