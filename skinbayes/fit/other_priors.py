@@ -251,6 +251,8 @@ def _weighted(
 ) -> _Weighted:
     """Draws with weights, which are independent, or of equal weight with the effective sample sizes of their parameters."""
     if log_weights is not None:
-        return _Weighted(theta, log_weights, priors, evidence=evidence)
+        # a proposal reaches beyond the ends of priors; what lies there has no weight, and no ratio of densities
+        counts = np.isfinite(log_weights)
+        return _Weighted(theta[counts], log_weights[counts], priors, evidence=evidence)
     least = min((size for size in sizes if size > 0), default=len(theta))
     return _Weighted(theta, np.zeros(len(theta)), priors, max(1.0, len(theta) / least), evidence=evidence)

@@ -39,6 +39,7 @@ from skinbayes.plot.style import (
     shortened,
 )
 from skinbayes.plot.symbols import axis_name, spoken_name
+from skinbayes.statistics.quantiles import finite_quantiles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -165,7 +166,7 @@ def _view(
 ) -> _View:
     observable = observables(fit)[0]
     y = observed_values(fit)[: len(abscissa[1])]
-    bands = np.nanquantile(predictions.with_effects(observable, column), LEVELS, axis=0)
+    bands = finite_quantiles(predictions.with_effects(observable, column), LEVELS)
     (x_unit, x_name), (y_unit, y_name) = axis_name(abscissa[0]), axis_name(observable)
     x_scale, y_scale = scale_for(x_unit, abscissa[1]), scale_for(y_unit, bands[2], y)
     of_row = levels_of_rows(fit, column)

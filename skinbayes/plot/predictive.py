@@ -22,6 +22,7 @@ from skinbayes.plot.style import (
     shortened,
 )
 from skinbayes.plot.symbols import figure_text, spoken_name
+from skinbayes.statistics.quantiles import finite_quantiles
 from skinbayes.vocabulary import lookup
 
 if TYPE_CHECKING:
@@ -75,16 +76,7 @@ def plot_prior_predictive(fit: FitResult, width: str | None = None) -> Figure:
 
 def predictive_quantiles(fit: FitResult, group: str = "posterior_predictive") -> FloatArray:
     """5, 25, 50, 75 and 95 % quantiles of the finite predictive draws of each row, shape ``(5, N)``, SI."""
-    draws = predictive_draws(fit, group)
-    return np.stack(
-        [
-            np.quantile(column[np.isfinite(column)], LEVELS)
-            if np.isfinite(column).any()
-            else np.full(5, np.nan)
-            for column in draws.T
-        ],
-        axis=1,
-    )
+    return finite_quantiles(predictive_draws(fit, group), LEVELS)
 
 
 def datum_names(fit: FitResult) -> list[str]:

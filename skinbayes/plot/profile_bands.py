@@ -11,6 +11,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.fit.predicted import row_names
 from skinbayes.plot.numbers import quantity
 from skinbayes.plot.predictive import LEVELS
+from skinbayes.statistics.quantiles import finite_quantiles
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
@@ -60,9 +61,7 @@ def profile_bands(fit: FitResult, problem: Problem, profile: Profile) -> list[Ba
     for position, rows in groups:
         abscissa, curves = curve_at_row(problem, profile, theta, rows[0])
         # where the theory gives no value for some of the draws, the others make the band
-        known = np.isfinite(curves).any(axis=0)
-        quantiles = np.full((len(LEVELS), len(abscissa)), np.nan)
-        quantiles[:, known] = np.nanquantile(curves[:, known], LEVELS, axis=0)
+        quantiles = finite_quantiles(curves, LEVELS)
         label = position + _row_text(problem, names, rows, shared) + _load(problem, middle, rows)
         bands.append(Band(label, rows, abscissa, quantiles))
     return bands
@@ -160,6 +159,8 @@ def _in_common(conditions: Conditions, rows: list[int]) -> str:
         telling.append([", ".join(parts) for parts in zip(*telling, strict=True)])
     for name, values in conditions.values.items():
         known = QUANTITIES[name]
+        if np.ptp(values[rows]) > 0.02 * np.abs(values[rows]).max():
+            continue  # three digits would not be the same
         telling.append([f"{known.symbol} = {quantity(float(value), known.unit, 3)}" for value in values])
     chosen = set(rows)
     for column in telling:

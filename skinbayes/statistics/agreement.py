@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import bdtr, ndtri
 
 from skinbayes.arrays import FloatArray
+from skinbayes.statistics.quantiles import finite_quantiles
 
 SURPRISING = 0.01
 """A datum with a smaller fraction of predictive draws on one side of it is far out."""
@@ -65,9 +66,7 @@ def examine(observed: FloatArray, draws: FloatArray, of_one_kind: bool) -> Agree
     (True, (19,), 19)
     """
     count = len(observed)
-    low, q25, middle, q75, high = np.nanquantile(
-        np.where(np.isfinite(draws), draws, np.nan), [0.05, 0.25, 0.5, 0.75, 0.95], axis=0
-    )
+    low, q25, middle, q75, high = finite_quantiles(draws, [0.05, 0.25, 0.5, 0.75, 0.95])
     wide = int(((low <= observed) & (observed <= high)).sum())
     below = (draws < observed).mean(axis=0)
     tails = np.minimum(below, 1.0 - below)

@@ -12,6 +12,7 @@ from scipy.stats import norm
 from skinbayes.fit import Fit
 from skinbayes.fit.arviz_adapter import power_scaling
 from skinbayes.fit.other_priors import OtherPriors
+from skinbayes.fit.tree import weighted_group
 from skinbayes.problem import build_problem
 from skinbayes.report.sensitivity import page_sensitivity, sensitivity_rows
 
@@ -95,6 +96,17 @@ def test_a_uniform_prior_wider_than_the_likelihood_costs_its_width_alone():
     assert twice.reliable and twice.log_evidence_change == pytest.approx(-np.log(1.6), abs=1e-6)
     assert twice.held == ("the lower end of typical_friction_coefficient",)
     assert any("cannot be: the lower end of" in sentence for sentence in found.sentences())
+
+
+def test_draws_of_a_proposal_beyond_a_prior_change_nothing():
+    """They have no weight; their ratio of densities, 0/0, once left every change of a bounded prior unknown."""
+    fit = null({"uniform": [0.1, 1.1]})
+    theta = np.append(fit.theta(), [[0.05], [1.2]], axis=0)[np.newaxis]
+    log_weights = np.append(np.zeros(len(fit.theta())), [-np.inf, -np.inf])[np.newaxis]
+    weighted = weighted_group(fit.problem, theta, log_weights)
+    found = replace(fit, groups={**fit.groups, "weighted_posterior": weighted}).prior_sensitivity()
+    half = found.of(["typical_friction_coefficient"], 0.5)
+    assert half.reliable and half.log_evidence_change == pytest.approx(np.log(2.0), abs=0.01)
 
 
 def test_a_uniform_prior_that_cuts_the_posterior_off_cannot_be_widened_by_weights():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,27 @@ def of_right_model(rng: np.random.Generator, sets: int) -> np.ndarray:
     """Residuals of data about a mean and of a scatter that the posterior knows badly."""
     scatter = np.exp(0.15 * rng.normal(size=(sets, 1)))
     return scatter * (rng.normal(size=(sets, 24)) + 0.2 * rng.normal(size=(sets, 1)))
+
+
+def test_many_conditions_take_little_memory() -> None:
+    """A matrix of rows times conditions would take 800 MB."""
+    rows = 10_000
+    condition = np.arange(rows) // 2 * 2 % (rows - 10)
+    condition = np.unique(condition, return_inverse=True)[1]
+    noise = np.random.default_rng(4).normal(size=(120, rows))
+    tracemalloc.start()
+    found = lack_of_fit(noise[0], noise[1:], condition)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert found is not None and found.degrees_of_freedom == rows - condition.max() - 1
+    # residuals of rows that share a condition, one condition after the other
+    within = sum(
+        np.square(noise[0, condition == k] - noise[0, condition == k].mean()).sum() for k in range(50)
+    )
+    first = condition < 50
+    part = lack_of_fit(noise[0, first], noise[1:, first], condition[first])
+    assert part is not None and part.scatter == pytest.approx(np.sqrt(within / part.degrees_of_freedom))
+    assert peak < 200e6
 
 
 def test_a_right_model_is_seldom_suspected() -> None:

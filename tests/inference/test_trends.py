@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import skinbayes as sb
+from skinbayes.fit import misfit
 from skinbayes.report import digest, quality
 from skinbayes.report.trends import trend_sentences
 from skinbayes.statistics.trends import KINDS, trends
@@ -108,10 +109,13 @@ def test_a_load_series_that_the_theory_does_not_follow_is_no_good_fit():
     assert all(check["probability"] <= 0.05 for check in found)
 
 
-def test_a_load_series_that_it_does_follow_is_not_suspected():
-    fit = load_series(0.0)
+def test_a_load_series_that_it_does_follow_is_not_suspected(monkeypatch):
+    fit, asked = load_series(0.0), []
+    monkeypatch.setattr(misfit, "trends", lambda *given: asked.append(1) or trends(*given))
+    assert fit.prior_sensitivity() is fit.prior_sensitivity()
     assert trend_sentences(fit) == [] and not quality.misfit(fit)
     assert digest(fit)["trends"] == {"friction_coefficient": []}
     (checks,) = fit.residual_trends.values()
     assert {check.column for check in checks} == {"normal_force", "order"}
     assert "trends do not speak against it" in quality.verdict(fit)[0]
+    assert asked == [1]  # verdict, page, terminal and JSON share it
