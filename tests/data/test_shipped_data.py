@@ -18,6 +18,7 @@ MEASUREMENTS = {
     "fehlberg2025-finger-stribeck": 165,
     "fehlberg2025-rheology": 306,
     "persson2013-drying-summary": 1,
+    "tortos2024-pla-on-silicone": 140,
 }
 REFERENCE = {
     "buchholz1988-palmar-friction": 10,
@@ -126,6 +127,23 @@ def test_forearm_on_glass() -> None:
     assert data.columns["sliding_speed"].tolist() == [0.008, 0.008]
     assert not any(name.endswith("_standard_deviation") for name in data.columns)
     assert "nominal_pressure" not in data.columns
+
+
+def test_silicone_under_rising_load() -> None:
+    data = load_dataset("tortos2024-pla-on-silicone")
+    load, friction = data.columns["normal_force"], data.columns["friction_coefficient"]
+    np.testing.assert_allclose(data.columns["nominal_pressure"], load / (4e-3) ** 2, rtol=1e-12)
+    spots = {("Dragon Skin 10", 0.04): 2.85945, ("Dragon Skin 10", 0.5): 1.441, ("Sil 950", 0.01): 1.07653}
+    elastomer, first = data.columns["elastomer"], data.columns["instrument"] == "nanotribometer"
+    for (name, force), expected in spots.items():
+        assert friction[(elastomer == name) & first & np.isclose(load, force)].tolist() == [expected]
+    for name in data.labels("elastomer"):
+        for instrument in data.labels("instrument"):
+            assert (
+                np.diff(load[(elastomer == name) & (first == (instrument == "nanotribometer"))]) > 0
+            ).all()
+    licence = (folder("tortos2024-pla-on-silicone") / "LICENSE").read_text(encoding="utf-8")
+    assert "Copyright (c) 2024 tolstoys19" in licence and "shall be included in all" in licence
 
 
 def test_finger_pad_design() -> None:

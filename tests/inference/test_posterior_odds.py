@@ -80,6 +80,7 @@ def test_the_model_preferred_is_right_as_often_as_its_probability_says() -> None
         for name, group in groups.items()
     }
     print("right, expected, data sets:", found)
+    # 78 of 100 where 77.6 were expected; 36, 25 and 17 in the bins where 38.9, 21.9 and 16.8 were
     for name, group in groups.items():
         assert chance(found[name][0], preferred[group]) > ALPHA, f"{name}: {found[name]}"
     # odds of the right size, neither too bold nor too shy: what they gain in the direction of their own size is nil
