@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -22,6 +22,7 @@ from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
 from skinbayes.sampling.target import Target
+from skinbayes.sampling.weighted_draws import ImportanceDraws
 from skinbayes.sampling.workers import sharing_out
 
 
@@ -84,7 +85,7 @@ def run_ensembles(
     try:
         with sharing_out(work, min(options.cores, options.ensembles)) as crew:
             for number in range(1, resumed):  # when the next attempt is due hangs on those before
-                finish.attempt(number * options.block_steps, partial(_joined, rounds[:number]), crew)
+                _attempt(finish, rounds[:number], options, crew)
             while True:
                 steps = len(rounds) * options.block_steps
                 if steps and (is_check(steps, options.block_steps) or steps >= last):
@@ -95,7 +96,7 @@ def run_ensembles(
                     far = sum(left_behind(state.log_density, len(target.names)).sum() for state in states)
                     pace = spent / made if made else None
                     progress(EnsembleProgress(steps, last, report, options, walkers, int(far), pace))
-                accepted = finish.attempt(steps, partial(_joined, rounds), crew)
+                accepted = _attempt(finish, rounds, options, crew)
                 if report is None and accepted is not None:
                     report = _judged(target, options, rounds)
                 if report is not None and (accepted is not None or report.converged or steps >= last):
@@ -159,6 +160,16 @@ def draw_identity(
         "sampler option block_steps": options.block_steps,
         "moves": f"{moves.__module__}.{moves.__qualname__}",
     }
+
+
+def _attempt(
+    finish: Finish,
+    rounds: list[list[EnsembleSteps]],
+    options: SamplerOptions,
+    crew: Callable[[Sequence[Any]], list[Any]],
+) -> ImportanceDraws | None:
+    discarded = last_gathering(rounds) * options.block_steps
+    return finish.attempt(len(rounds) * options.block_steps, partial(_joined, rounds), crew, discarded)
 
 
 def _judged(target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]]) -> StoppingReport:

@@ -55,7 +55,11 @@ class Finish:
         self.refused = ""
 
     def attempt(
-        self, steps: int, joined: Callable[[str], FloatArray], crew: Callable[[Sequence[Any]], list[Any]]
+        self,
+        steps: int,
+        joined: Callable[[str], FloatArray],
+        crew: Callable[[Sequence[Any]], list[Any]],
+        discarded: int = 0,
     ) -> ImportanceDraws | None:
         """Draws if they are due and accepted; what comes out depends on the seed, ``steps`` and the positions alone.
 
@@ -64,12 +68,14 @@ class Finish:
         steps : of each ensemble so far
         joined : gives ``"positions"``, ``(ensembles, steps, walkers, D)``, and ``"log_density"``
         crew : evaluates positions
+        discarded : steps at the beginning after which walkers were taken along; fewer than ``steps``
         """
         options = self._options
         due = options.importance and steps >= self._not_before and steps > 0
         if not due or not is_check(steps, options.block_steps, FIRST_ATTEMPT):
             return None
-        positions, log_density = (joined(name)[:, steps // 2 :] for name in ("positions", "log_density"))
+        first = max(steps // 2, discarded)
+        positions, log_density = (joined(name)[:, first:] for name in ("positions", "log_density"))
         ensembles, _, walkers, dimension = positions.shape
         chains = positions.reshape(ensembles, -1, dimension)
         apart = [rank_r_hat(chains[..., column]) for column in range(dimension)]

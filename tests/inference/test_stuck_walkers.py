@@ -8,9 +8,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+from skinbayes.sampling.ensemble_engine import EnsembleEngine
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
-from skinbayes.sampling.stuck_walkers import LATEST_ROUND, left_behind
+from skinbayes.sampling.stuck_walkers import (
+    LATEST_ROUND,
+    ensembles_left_behind,
+    left_behind,
+)
 
 
 @dataclass(frozen=True)
@@ -77,3 +82,36 @@ def test_without_stuck_walkers_nothing_changes() -> None:
     assert not any(low)
     assert run.report.burn_in <= 200
     assert LATEST_ROUND >= 4
+
+
+@dataclass(frozen=True)
+class WholePit(Pit):
+    """Half of the ensembles begin in the pit, with all their walkers."""
+
+    def starts(self, rng, count):
+        starts = rng.normal(0.0, 0.05, size=(count, 3))
+        return starts + 30.0 if rng.random() < 0.5 else starts
+
+    def prior_transform(self, unit):
+        return 30.0 * unit
+
+
+@pytest.mark.parametrize("importance", [True, False])
+def test_an_ensemble_in_a_pit_goes_on_from_the_others(importance) -> None:
+    found = EnsembleEngine().run(WholePit(), SamplerOptions(seed=2, importance=importance, max_steps=2000))
+    assert found.diagnostics["converged"]
+    weights = None if found.log_weights is None else np.exp(found.log_weights.ravel())
+    deviation = np.sqrt(np.average(np.square(found.samples.reshape(-1, 3)), axis=0, weights=weights))
+    effective = np.min(found.diagnostics["ess_bulk"])
+    assert deviation == pytest.approx(0.01, rel=5 / np.sqrt(2 * effective))
+
+
+def test_two_modes_that_both_count_keep_their_ensembles() -> None:
+    """A mode of 100 times the height in each of 12 dimensions has e^55 times the density, and as much mass."""
+    rng = np.random.default_rng(1)
+    z = rng.normal(size=(2, 400, 12))
+    width = np.array([1.0, 0.01])[:, np.newaxis]
+    density = -0.5 * np.square(z).sum(axis=2) - 12 * np.log(width)
+    positions = z * width[..., np.newaxis]
+    assert not ensembles_left_behind(density, positions).any()
+    assert ensembles_left_behind(density - np.array([[0.0], [90.0]]), positions).tolist() == [False, True]
