@@ -103,7 +103,7 @@ def test_draws_of_a_proposal_beyond_a_prior_change_nothing():
     fit = null({"uniform": [0.1, 1.1]})
     theta = np.append(fit.theta(), [[0.05], [1.2]], axis=0)[np.newaxis]
     log_weights = np.append(np.zeros(len(fit.theta())), [-np.inf, -np.inf])[np.newaxis]
-    weighted = weighted_group(fit.problem, theta, log_weights)
+    weighted = weighted_group(fit.problem.names, theta, log_weights)
     found = replace(fit, groups={**fit.groups, "weighted_posterior": weighted}).prior_sensitivity()
     half = found.of(["typical_friction_coefficient"], 0.5)
     assert half.reliable and half.log_evidence_change == pytest.approx(np.log(2.0), abs=0.01)
