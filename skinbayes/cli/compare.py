@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import click
 
-from skinbayes.cli.options import json_option
-from skinbayes.cli.output import print_json, print_sentences, print_table, print_text
-
-if TYPE_CHECKING:
-    from skinbayes.comparison import Comparison
+from skinbayes.cli.options import data_option, json_option, number_option
+from skinbayes.cli.output import (
+    EXIT_DONE,
+    EXIT_INTERRUPTED,
+    print_json,
+    print_sentences,
+    print_table,
+    print_text,
+    say,
+)
+from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
 
 
 @click.command()
-@click.argument("runs", nargs=-1, required=True, metavar="RUN RUN ...")
+@click.argument("runs", nargs=-1, required=True, metavar="RUN_OR_MODEL ...")
+@data_option
+@number_option("--seed", SEED, 0, "Of models that are sampled.")
+@number_option("--ess", EFFECTIVE_SAMPLE_SIZE, 10, "Effective sample size wanted of models that are sampled.")
+@number_option("--cores", 1, 1, "Worker processes; they do not change the draws.")
+@click.option(
+    "-o",
+    "--output",
+    default="runs",
+    show_default=True,
+    metavar="DIR",
+    help="Where the runs of models are, or come to be: DIR/MODEL-seedN.",
+)
 @click.option(
     "--no-refit",
     is_flag=True,
@@ -38,70 +56,63 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Sample anew with wider priors where the draws cannot tell whether the evidence would still prefer the same model.",
 )
+@click.option("--report", metavar="FILE.html", help="Also write a page about the comparison.")
 @json_option
 def compare(
     runs: tuple[str, ...],
+    given: tuple[str, ...],
+    seed: int,
+    ess: int,
+    cores: int,
+    output: str,
     no_refit: bool,
     leave_out: tuple[str, ...],
     nested: bool,
     sensitivity: bool,
+    report: str | None,
     as_json: bool,
-) -> None:
+) -> int:
     """Compare models by what they predict for data left out.
 
-    Runs on different data are refused.
+    Runs on different data are refused. A model that is named instead of a run is sampled, unless that was done
+    before; the same command again goes on from where it was interrupted.
 
     Single data are left out one at a time, and where the data have grouping columns all data of one person, or one liquid: by
     importance sampling, and by sampling anew where that fails.
     """
     from dataclasses import replace
 
+    from skinbayes.cli.page import refuse_other_files
     from skinbayes.cli.progress import counted_progress, named_progress
+    from skinbayes.cli.runs import Wanted, fits_of
     from skinbayes.comparison import compare as compare_fits
     from skinbayes.comparison import cross_check
-    from skinbayes.comparison.verdicts import plus_minus
-    from skinbayes.fit.storage import load_any_fit
+    from skinbayes.comparison.tables import EXPLAINED, comparison_tables
+    from skinbayes.report import write_comparison
 
-    fits = [load_any_fit(run) for run in runs]
+    page = None if report is None else Path(report)
+    if page is not None:
+        refuse_other_files(page)
+    wanted = Wanted(given, seed, ess, cores, Path(output))
+    try:
+        fits = fits_of(runs, wanted)
+    except KeyboardInterrupt:
+        say("interrupted. Repeat the command to go on from here.", err=True)
+        return EXIT_INTERRUPTED
     with named_progress("nested sampling of") as told:
         checks = tuple(cross_check(fit, told) for fit in fits if nested)
     with counted_progress("refits") as progress:
         compared = compare_fits(fits, not no_refit, leave_out, progress=progress, sensitivity=sensitivity)
     result = replace(compared, cross_checks=checks)
+    if page is not None:
+        write_comparison(result, fits, page)
     if as_json:
-        print_json(result.to_dict())
-        return
-    rows = [
-        (m.name, plus_minus(m.elpd_loo, m.elpd_loo_se), plus_minus(m.elpd_difference, m.elpd_difference_se),
-         f"{m.p_loo:.1f}", "–" if m.weight is None else f"{m.weight:.2f}", str(m.refitted_rows), str(m.unreliable_rows))
-        for m in result.models
-    ]  # fmt: skip
-    headers = ("model", "elpd", "difference", "p_loo", "weight", "refits", "unreliable")
-    print_table(headers, rows, right=range(1, 7))
-    if result.has_evidence:
-        evidence = [
-            (m.name, f"{m.log_evidence:.2f} ± {m.log_evidence_se:.2f}", f"{m.probability:.3f}")
-            for m in result.by_evidence
-        ]
-        print_table(("model", "ln evidence", "probability"), evidence, right=range(1, 3))
-    for column in result.columns:
-        _print_levels(result, column)
-    print_text(
-        "elpd: expected log predictive density of the data, each left out in turn, ± standard error; more is better. p_loo: "
-        "effective number of parameters. weight: fraction in the mixture of the models that predicts best. refits: data without "
-        "which the model was sampled anew. unreliable: data whose number cannot be trusted."
-    )
+        print_json(result.to_dict() | {"report": page and str(page)})
+        return EXIT_DONE
+    for table in comparison_tables(result):
+        print_table(table.headers, table.rows, title=table.title, right=range(1, len(table.headers)))
+    print_text(EXPLAINED)
     print_sentences(result.sentences())
-
-
-def _print_levels(result: Comparison, column: str) -> None:
-    from skinbayes.comparison.verdicts import one, plus_minus
-
-    rows = []
-    for model in sorted(result.models, key=lambda model: -model.left_out[column].elpd):
-        entry = model.left_out[column]
-        pairs = ((entry.elpd, entry.elpd_se), (entry.difference, entry.difference_se))
-        said = (plus_minus(value, error) for value, error in pairs)
-        rows.append((model.name, *said, str(len(entry.refitted)), str(len(entry.unreliable))))
-    headers = ("model", "elpd", "difference", "refits", "unreliable")
-    print_table(headers, rows, title=f"one {one(column)} left out at a time", right=range(1, 5))
+    if page is not None:
+        say(f"report: {page}")
+    return EXIT_DONE

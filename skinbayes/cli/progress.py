@@ -72,16 +72,19 @@ def counted_progress(what: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def fit_progress() -> Iterator[tuple[Callable[[int, int], None], Callable[[RunProgress], None]]]:
+def fit_progress(
+    name: str = "",
+) -> Iterator[tuple[Callable[[int, int], None], Callable[[RunProgress], None]]]:
     """Yield what to call while a table is built, and after every block of steps; one bar makes way for the other."""
+    of, before = (f" of {name}", f"{SAMPLING} {name}") if name else ("", SAMPLING)
     with ExitStack() as shown:
-        count = shown.enter_context(counted_progress("building the table"))
+        count = shown.enter_context(counted_progress(f"building the table{of}"))
         sampling: list[Callable[[RunProgress], None]] = []
 
         def update(progress: RunProgress) -> None:
             if not sampling:
                 shown.close()
-                sampling.append(shown.enter_context(sampling_progress()))
+                sampling.append(shown.enter_context(sampling_progress(before)))
             sampling[0](progress)
 
         yield count, update

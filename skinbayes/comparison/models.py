@@ -153,6 +153,11 @@ class Comparison:
         ]
 
     @property
+    def converged(self) -> bool:
+        """Whether all fits met their stopping rules."""
+        return all(model.converged for model in self.models)
+
+    @property
     def has_evidence(self) -> bool:
         """Whether ln Z is known of all models."""
         return all(model.log_evidence is not None for model in self.models)

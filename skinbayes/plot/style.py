@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from textwrap import fill, wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from skinbayes.errors import InputError
 from skinbayes.plot.symbols import figure_text
@@ -170,7 +170,15 @@ def letters_of_key(width: float) -> int:
     return int(12 * width)
 
 
-def set_title(figure: Figure, fit: FitResult, text: str) -> None:
+class Sampled(Protocol):
+    """What has converged or not: a fit, or a comparison of fits."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether its numbers are final."""
+
+
+def set_title(figure: Figure, fit: Sampled, text: str) -> None:
     """Write the title as large as fits; a fit that has not converged is named so, in another colour and weight."""
     width, height = figure.get_size_inches()
     title = text if fit.converged else f"{NOT_CONVERGED} – {text}"

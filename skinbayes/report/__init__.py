@@ -1,8 +1,9 @@
-"""One self-contained HTML page about a fit: what was learnt and what was not."""
+"""One self-contained HTML page about a fit, what was learnt and what was not, or about a comparison."""
 
+from skinbayes.report.comparison_page import write_comparison
 from skinbayes.report.digest import digest
 from skinbayes.report.joint_page import joint_digest, joint_remarks
 from skinbayes.report.page import write_report
 from skinbayes.report.remarks import remarks
 
-__all__ = ["digest", "joint_digest", "joint_remarks", "remarks", "write_report"]
+__all__ = ["digest", "joint_digest", "joint_remarks", "remarks", "write_comparison", "write_report"]

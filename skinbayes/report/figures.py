@@ -13,6 +13,7 @@ from skinbayes.report.drawings import Drawing, drawings
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from skinbayes.comparison import Comparison
     from skinbayes.fit import Fit
 
 PAGE_DENSITY = 92
@@ -39,7 +40,7 @@ def pictures(fit: Fit) -> dict[str, dict[str, Any]]:
     return {drawing.key: picture(fit, drawing) for drawing in drawings(fit)}
 
 
-def picture(fit: Fit, drawing: Drawing) -> dict[str, Any]:
+def picture(fit: Fit | Comparison, drawing: Drawing) -> dict[str, Any]:
     """Texts of a drawing and its images for screens and for phones."""
     wide = drawing.draw(fit, width=None)
     return vars(drawing) | {

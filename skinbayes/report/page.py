@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skinbayes.atomic import write_atomically
-from skinbayes.errors import cannot_write
 from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.predicted import observed_values
 from skinbayes.report import opening, quality, sentences, tables
@@ -15,8 +13,8 @@ from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.joint_page import joint_context
-from skinbayes.report.markup import links, symbols
 from skinbayes.report.origin import data_origin
+from skinbayes.report.rendering import rendered, write_whole
 from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.sensitivity import EXPLAINED, HEADERS, page_sensitivity
 from skinbayes.report.validity import validity_sentences
@@ -59,13 +57,7 @@ def write_report(
     MachineError
         The disk is full.
     """
-    path = Path(path)
-    page = render(fit, baseline_models, left_out)
-    try:
-        write_atomically(path, page.encode())
-    except OSError as error:
-        raise cannot_write(path, error, begun=False) from None
-    return path
+    return write_whole(Path(path), render(fit, baseline_models, left_out))
 
 
 def render(
@@ -74,26 +66,9 @@ def render(
     left_out: Sequence[LeftOutExperiment] | None = None,
 ) -> str:
     """The page as text."""
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("skinbayes.report", "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    # both escape their text before they add markup
-    safe = jinja2.filters.do_mark_safe
-    environment.filters |= {
-        "symbols": lambda text: safe(symbols(text)),
-        "links": lambda text: safe(links(text)),
-    }
     if isinstance(fit, JointFit):
-        return environment.get_template("joint.html").render(
-            joint_context(fit, fit.left_out() if left_out is None else left_out)
-        )
-    return environment.get_template("page.html").render(context(fit, baseline_models))
+        return rendered("joint.html", joint_context(fit, fit.left_out() if left_out is None else left_out))
+    return rendered("page.html", context(fit, baseline_models))
 
 
 def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[str, Any]:

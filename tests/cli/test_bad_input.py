@@ -210,7 +210,8 @@ def test_show_of_nothing(capsys, tmp_path):
 @pytest.mark.parametrize("command", ["compare", "report"])
 def test_runs_that_are_none(command, capsys, tmp_path):
     twice = 2 if command == "compare" else 1
-    message(run(capsys, command, *[tmp_path / "no"] * twice), "no result found")
+    missing = "neither a run nor a model" if command == "compare" else "no result found"
+    message(run(capsys, command, *[tmp_path / "no"] * twice), missing)
     message(run(capsys, command, *[tmp_path] * twice), "no result found")
     (tmp_path / "steps").mkdir()
     message(run(capsys, command, *[tmp_path] * twice), "not finished", "--resume")
