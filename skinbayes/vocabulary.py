@@ -29,6 +29,10 @@ _ALL = (
     Quantity("poisson_ratio_layer", "ν0", "1", "Poisson ratio of the stratum corneum", -1.0, 0.5),
     Quantity("poisson_ratio_bulk", "ν1", "1", "Poisson ratio of the tissue below", -1.0, 0.5),
     Quantity("layer_thickness", "d", "m", "thickness of the stratum corneum"),
+    Quantity("young_modulus_dermis", "E_d", "Pa", "Young's modulus of viable epidermis and dermis"),
+    Quantity("dermis_thickness", "d_d", "m", "thickness of viable epidermis and dermis"),
+    Quantity("young_modulus_fat", "E_f", "Pa", "Young's modulus of the fat below the dermis"),
+    Quantity("fat_thickness", "d_f", "m", "thickness of the fat below the dermis"),
     Quantity(
         "yield_stress", "σ_Y", "Pa", "penetration hardness; inf is purely elastic", infinite_allowed=True
     ),

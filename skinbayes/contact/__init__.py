@@ -31,6 +31,7 @@ from skinbayes.contact.solid import (
     surface_response,
     validate_solid,
 )
+from skinbayes.contact.stacked_skin import StackedSkin
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.contact.viscoelastic import Creep, ViscoelasticMaterial
 from skinbayes.contact.viscoelastic_indentation import (
@@ -61,6 +62,7 @@ __all__ = [
     "HomogeneousSolid",
     "IndentationCycle",
     "LayeredSkin",
+    "StackedSkin",
     "ViscoelasticLine",
     "ViscoelasticMaterial",
     "ViscoelasticSkin",

@@ -11,7 +11,7 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.roughness._fields import Floats, remembering_numbers, with_axes
 
-_UNITS = {"thickness": "m", "times": "s"}
+_UNITS = {"thickness": "m", "thicknesses": "m", "times": "s"}
 """Of a field, by the last word of its name; the others are moduli."""
 
 

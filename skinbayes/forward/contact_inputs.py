@@ -12,6 +12,7 @@ from skinbayes.contact import (
     ContactArea,
     HomogeneousSolid,
     LayeredSkin,
+    StackedSkin,
     elastoplastic_contact_area,
     twice_stress_variance,
     validate_solid,
@@ -32,18 +33,34 @@ from skinbayes.roughness import (
 
 SKIN_INPUTS = ("young_modulus_layer", "young_modulus_bulk", "layer_thickness")
 
-SOLID_ALTERNATIVES = (SKIN_INPUTS, ("young_modulus",))
-"""How the solid can be given: layered skin, or one of a single material."""
+DERMIS_INPUTS = ("young_modulus_dermis", "dermis_thickness")
+FAT_INPUTS = ("young_modulus_fat", "fat_thickness")
+"""Layers below the stratum corneum, each of two inputs; ``young_modulus_bulk`` is what lies below them."""
 
-SOLID_INPUTS = (*SKIN_INPUTS, "young_modulus", "poisson_ratio_layer", "poisson_ratio_bulk", "poisson_ratio")
+SOLID_ALTERNATIVES = (
+    (*SKIN_INPUTS, *DERMIS_INPUTS, *FAT_INPUTS),
+    (*SKIN_INPUTS, *DERMIS_INPUTS),
+    (*SKIN_INPUTS, *FAT_INPUTS),
+    SKIN_INPUTS,
+    ("young_modulus",),
+)
+"""How the solid can be given: skin of three layers, two or one, or one of a single material."""
+
+SOLID_INPUTS = (
+    *SKIN_INPUTS, *DERMIS_INPUTS, *FAT_INPUTS, "young_modulus", "poisson_ratio_layer", "poisson_ratio_bulk", "poisson_ratio",
+)  # fmt: skip
 """All inputs that may belong to the solid."""
 
 GOES_WITH = {
     "poisson_ratio_layer": "layer_thickness",
     "poisson_ratio_bulk": "layer_thickness",
     "poisson_ratio": "young_modulus",
+    "young_modulus_dermis": "dermis_thickness",
+    "dermis_thickness": "young_modulus_dermis",
+    "young_modulus_fat": "fat_thickness",
+    "fat_thickness": "young_modulus_fat",
 }
-"""Inputs of one kind of solid, which have no meaning for the other."""
+"""Inputs of one kind of solid, which have no meaning for the other, and the two of a layer."""
 
 SKIN_DEFAULTS = {
     "poisson_ratio_layer": 0.5,
@@ -76,10 +93,28 @@ def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     return table
 
 
-def skin_of(inputs: Inputs) -> LayeredSkin | HomogeneousSolid:
-    """Return the solid of ``inputs``: layered skin, or a homogeneous one where ``young_modulus`` is given."""
+def skin_of(inputs: Inputs) -> LayeredSkin | StackedSkin | HomogeneousSolid:
+    """Return the solid of ``inputs``: skin of as many layers as are given, or a homogeneous one of ``young_modulus``.
+
+    All that lies below the stratum corneum has the Poisson ratio of the bulk.
+    """
     if "young_modulus" in inputs:
         return HomogeneousSolid(young_modulus=inputs["young_modulus"], poisson_ratio=inputs["poisson_ratio"])
+    deeper = [names for names in (DERMIS_INPUTS, FAT_INPUTS) if names[0] in inputs]
+    if deeper:
+        moduli = ["young_modulus_layer", *(modulus for modulus, _ in deeper), "young_modulus_bulk"]
+        ratios = ["poisson_ratio_layer", *["poisson_ratio_bulk"] * (len(deeper) + 1)]
+        thicknesses = ["layer_thickness", *(thickness for _, thickness in deeper)]
+        return StackedSkin(
+            **{
+                field: np.stack(np.broadcast_arrays(*(inputs[name] for name in names)), axis=-1)
+                for field, names in zip(
+                    ("young_moduli", "poisson_ratios", "thicknesses"),
+                    (moduli, ratios, thicknesses),
+                    strict=True,
+                )
+            }
+        )
     return LayeredSkin(
         young_modulus_layer=inputs["young_modulus_layer"],
         young_modulus_bulk=inputs["young_modulus_bulk"],
