@@ -1,5 +1,7 @@
 """Skin of several layers against one layer, none, and all layers solved at once from Airy's stress functions."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -33,9 +35,7 @@ def columns(z, depth, nu, decaying_only):
                 (sign**k * place + k * sign ** (k - 1) * slope if power else sign**k) * growth
                 for k in range(4)
             ]
-            found.append(
-                [-f[0], f[1], (1 - nu) * f[2] + nu * f[0], (1 - nu) * f[3] - (2 - nu) * f[1]]
-            )
+            found.append([-f[0], f[1], (1 - nu) * f[2] + nu * f[0], (1 - nu) * f[3] - (2 - nu) * f[1]])
     return np.array(found).T
 
 
@@ -106,8 +106,8 @@ def test_integrals_over_the_band():
         q = np.exp(place)
         return np.pi * q**4 * SURFACE.power(q) * effective_modulus(skin, q) ** 2
 
-    knots = np.linspace(*ends, 30)
-    expected = sum(quad(density, a, b, epsrel=1e-9)[0] for a, b in zip(knots[:-1], knots[1:], strict=True))
+    knots = np.linspace(*ends, 16)
+    expected = sum(quad(density, a, b, epsrel=1e-7)[0] for a, b in pairwise(knots))
     assert twice_stress_variance(SURFACE, skin) == pytest.approx(expected, rel=1e-6)
     # the layer below the first is felt by the longest waves only
     wide = mean_separation(1e2, SURFACE, skin=skin)
