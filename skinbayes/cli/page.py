@@ -19,7 +19,9 @@ MARK = b'<meta name="generator" content="skinbayes">'
 
 
 def refuse_other_files(page: Path) -> None:
-    """InputError if something else than a page of skinbayes stands where a page is to be written."""
+    """InputError if there is no folder for a page, or something else than a page of skinbayes stands in its place."""
+    if not page.parent.is_dir():
+        raise InputError(f"{page}: there is no folder {page.parent}; expected one to write the page into")
     if page.is_dir():
         raise InputError(f"{page}: a folder; expected the name of a page to write, such as report.html")
     if (

@@ -164,9 +164,6 @@ def test_not_converged_is_said_loudly(runs, capsys, monkeypatch):
     compared = run(capsys, "compare", "first", "short", "--no-refit", "--json")
     assert compared.status == 0
     assert any("NOT CONVERGED" in sentence for sentence in compared.document()["sentences"])
-    assert "not converged" in run(capsys, "report", "short", "-o", "short.html").output.lower() or (
-        "not converged" in Path("short.html").read_text(encoding="utf-8").lower()
-    )
 
 
 def test_compare(runs, capsys):
@@ -188,7 +185,7 @@ def test_report(runs, capsys):
         "<!"
     )
     elsewhere = run(capsys, "report", folder / "first", "-o", folder / "no" / "page.html")
-    assert elsewhere.status in (0, 2) and "Traceback" not in elsewhere.errors
+    assert elsewhere.status == 2 and "there is no folder" in elsewhere.errors
 
 
 @pytest.mark.parametrize("command", COMMANDS)
