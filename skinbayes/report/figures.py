@@ -71,7 +71,7 @@ def _pixels(figure: Figure, width: float) -> bytes:
             buffer,
             format="png",
             dpi=min(3 * PAGE_DENSITY, int(MOST_PIXELS / width)),
-            pil_kwargs={"compress_level": 9},
+            pil_kwargs={"compress_level": 6},  # 9 takes twice the time of everything for 3 % less
         )
     return buffer.getvalue()
 
