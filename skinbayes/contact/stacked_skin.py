@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -95,7 +96,7 @@ class StackedSkin:
             np.broadcast_shapes(np.shape(self.poisson_ratios), np.shape(self.young_moduli)),
         )
 
-    def _modulus(self, wavevector: FloatArray, axes: int) -> FloatArray:
+    def _modulus(self, wavevector: Any, axes: int) -> Any:
         young, ratios, thick = self._young, self._poisson, np.asarray(self.thicknesses)
         found = layered_modulus(
             wavevector,

@@ -14,6 +14,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec, check_printable, find_model, read_block, read_parameters
 from skinbayes.files.modelschema import ExperimentBlock, JointBlock, ModelBlock
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.stated_surface import StatedSurface, stated_about
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
 
@@ -34,6 +35,7 @@ class JointSpec:
     experiments : name to what a model file of this experiment alone would say, without parameters and surface
     parameters : inputs of the forward models: shared by all experiments that take them, or one for each experiment
     surface_name, surface_file : named surface or tabulated spectrum
+    surface_stated : what is said about the spectrum
     """
 
     name: str
@@ -45,6 +47,7 @@ class JointSpec:
     parameters: tuple[ParameterSpec, ...]
     surface_name: str | None = None
     surface_file: Path | None = None
+    surface_stated: StatedSurface | None = None
 
     @property
     def shared(self) -> frozenset[str]:
@@ -123,6 +126,7 @@ def _read(block: JointBlock, path: Path, text: str, where: Places) -> JointSpec:
         surface_file=None
         if surface is None or surface.file is None
         else (path.parent / surface.file).resolve(),
+        surface_stated=stated_about(surface, where),
     )
 
 

@@ -24,6 +24,7 @@ from skinbayes.files.scatter_block import (
     read_correlation,
     read_discrepancy,
 )
+from skinbayes.files.stated_surface import StatedSurface, stated_about
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
 from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
@@ -45,6 +46,7 @@ class ModelSpec:
     spread, input_spread : whether spread columns of the observables, and of the inputs, are used; None if not said
     missing : ``"drop"`` if rows without a value in a column that is used are left out
     surface_name, surface_file : named surface or tabulated spectrum
+    surface_stated : what is said about the spectrum
     parameters : parameters of the forward model, fixed and free
     noise : observable to the name of its noise family
     noise_parameters : parameters of noise and discrepancy
@@ -73,6 +75,7 @@ class ModelSpec:
     missing: str | None = None
     surface_name: str | None = None
     surface_file: Path | None = None
+    surface_stated: StatedSurface | None = None
     noise: dict[str, str] = field(default_factory=dict)
     noise_parameters: tuple[ParameterSpec, ...] = ()
     groups: tuple[ParameterSpec, ...] = ()
@@ -197,6 +200,7 @@ def read_block(block: ModelBlock, path: Path, text: str, where: Callable[..., st
         surface_file=None
         if surface is None or surface.file is None
         else (path.parent / surface.file).resolve(),
+        surface_stated=stated_about(surface, where),
         noise=families,
         noise_parameters=noise_parameters,
         groups=read_groups(block.groups, families, where),

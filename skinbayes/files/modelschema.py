@@ -61,6 +61,10 @@ class SurfaceBlock(_Strict):
 
     name: str | None = None
     file: str | None = None
+    convention: str | None = None
+    rms_height_measured: Any = None
+    rms_slope_measured: Any = None
+    total_area_ratio_measured: Any = None
 
     _source = _either(name=" (a named surface)", file=" (the path of a spectrum CSV)")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,12 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.columns import read_quantity
-from skinbayes.files.table import CsvTable, Problems, quoted, read_table
-from skinbayes.roughness import TabulatedSpectrum
-from skinbayes.units import describe_unit, split_header
+from skinbayes.files.reading import read_file
+from skinbayes.files.separated import decoded
+from skinbayes.files.stated_surface import MEASURED, StatedSurface, stated_surface
+from skinbayes.files.table import LARGEST_TABLE, CsvTable, Problems, quoted, read_table
+from skinbayes.roughness import CONVENTIONS, TabulatedSpectrum, rms_height, rms_slope, total_area_ratio
+from skinbayes.units import describe_unit, format_quantity, split_header
 from skinbayes.vocabulary import Quantity, suggestions
 
 # Ranges far wider than any surface, from kilometres to below atoms; they keep powers of the values finite.
@@ -31,30 +35,36 @@ _EXPECTED = (
 )
 
 
-def read_spectrum(path: str | Path) -> TabulatedSpectrum:
+MOST_APART = 0.1
+"""Relative difference of a measured rms height, slope or area beyond the nominal one from that of the spectrum, beyond which
+the spectrum is refused; conventions differ by a factor of 1.4 in height or more."""
+
+
+def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> TabulatedSpectrum:
     """Read a tabulated roughness power spectrum.
 
     The CSV has a column ``wavevector`` (``[1/m]`` or a unit that converts to it, 2π over the wavelength) and
-    either ``power_spectrum_2d [m^4]``, in the convention of the paper (Eq. 1), whose mean square height is
-    ``2π ∫ q C(q) dq``, or ``power_spectrum_1d [m^3]`` of line profiles, whose mean square height is
-    ``2 ∫ C1D(q) dq`` over q > 0, which is converted. The name of the column decides: a number cannot tell which
-    of the two it is.
+    either ``power_spectrum_2d [m^4]``, of an area, or ``power_spectrum_1d [m^3]``, of line profiles, which is converted. The
+    numbers cannot tell in which of the `CONVENTIONS` they are: comments above the header say it, ``# convention: paper``, or
+    ``stated`` does. A measured rms height, slope or area, ``# rms_height_measured: 22 um``, must be that of the spectrum.
 
     Parameters
     ----------
     path : the CSV
+    stated : what is known from elsewhere, in place of what comments say
 
     Returns
     -------
     TabulatedSpectrum
-        two-dimensional spectrum in SI
+        two-dimensional spectrum in SI, in the convention of the paper
 
     Raises
     ------
     InputError
         naming line and column, for a missing or unknown column, a unit of another dimension, cells that are
         not positive finite numbers, wavevectors that do not increase, fewer than two or too many rows, or
-        profiles that no isotropic surface has
+        profiles that no isotropic surface has; if no convention is stated, one of the other kind of spectrum is, or the
+        spectrum does not give what was measured
     """
     path = Path(path)
     table = read_table(path, max_rows=max(MAX_ROWS.values()))
@@ -78,11 +88,74 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
         )
     try:
         if power_name == "power_spectrum_2d":
-            return TabulatedSpectrum(wavevector, power)
-        with np.errstate(all="ignore"):  # the result is checked
-            return TabulatedSpectrum.from_profile(wavevector, power)
+            spectrum = TabulatedSpectrum(wavevector, power)
+        else:
+            with np.errstate(all="ignore"):  # the result is checked
+                spectrum = TabulatedSpectrum.from_profile(wavevector, power)
     except InputError as error:
         raise InputError(f"{path}, column '{power_name}': {error}") from None
+    return _normalised(path, spectrum, power_name, _merged(_comments(path), stated or StatedSurface()))
+
+
+def _comments(path: Path) -> StatedSurface:
+    """What comments above the header state."""
+    given: dict[str, str] = {}
+    lines: dict[str, int] = {}
+    text = decoded(read_file(path, LARGEST_TABLE, "a CSV file"), path)
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.lstrip().startswith("#"):
+            break
+        key, mark, value = line.lstrip("# \t").replace("=", ":", 1).partition(":")
+        if mark and key.strip() in StatedSurface._fields:
+            given[key.strip()], lines[key.strip()] = value.strip().strip("\"'"), number
+    return stated_surface(given, lambda key: f"{path}, line {lines[key]}: {key}")
+
+
+def _merged(comments: StatedSurface, stated: StatedSurface) -> StatedSurface:
+    return comments._replace(**{key: value for key, value in stated._asdict().items() if value is not None})
+
+
+def _normalised(
+    path: Path, spectrum: TabulatedSpectrum, power_name: str, stated: StatedSurface
+) -> TabulatedSpectrum:
+    """The spectrum in the convention of the paper, if it has what was measured."""
+    possible = {
+        name: TabulatedSpectrum(spectrum.wavevector, spectrum.node_power / convention.times)
+        for name, convention in CONVENTIONS.items()
+        if f"power_spectrum_{convention.dimensions}d" == power_name
+    }
+    if stated.convention is None:
+        raise InputError(
+            f"{path}: the file does not say in which convention {power_name} is; expected '# convention: NAME' above the header, "
+            f'or convention = "NAME" under [surface], of {_meanings(possible)}'
+        )
+    if stated.convention not in possible:
+        raise InputError(
+            f"{path}: the convention '{stated.convention}' is not one of {power_name}; expected {_meanings(possible)}"
+        )
+    found = possible[stated.convention]
+    for key, value in (
+        ("rms_height_measured", rms_height(found)),
+        ("rms_slope_measured", rms_slope(found)),
+        ("total_area_ratio_measured", total_area_ratio(rms_slope(found))),
+    ):
+        measured, beyond = getattr(stated, key), float(key == "total_area_ratio_measured")
+        if measured is not None and not abs(value - measured) <= MOST_APART * (measured - beyond):
+            has, was = (format_quantity(float(x), MEASURED[key], 3) for x in (value, measured))
+            raise InputError(
+                f"{path}: {key} is {was}, but the spectrum in the convention '{stated.convention}' has {has}; expected them to "
+                f"agree to {MOST_APART:.0%}. Possible are {_meanings(possible)}"
+            )
+    return found
+
+
+def _meanings(possible: Mapping[str, TabulatedSpectrum]) -> str:
+    """Each convention with the surface that it would mean."""
+    return "; ".join(
+        f"'{name}' ({CONVENTIONS[name].variance}: rms height {format_quantity(float(rms_height(one)), 'm', 3)}, "
+        f"rms slope {float(rms_slope(one)):.3g})"
+        for name, one in possible.items()
+    )
 
 
 def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
@@ -129,4 +202,4 @@ def spectrum_text(spectrum: TabulatedSpectrum) -> str:
     """A spectrum as the CSV that `read_spectrum` reads, every number with all its digits."""
     power = spectrum.node_power * np.asarray(spectrum.scale)
     rows = (f"{q!r},{c!r}" for q, c in zip(spectrum.wavevector.tolist(), power.tolist(), strict=True))
-    return "\n".join(("wavevector [1/m],power_spectrum_2d [m^4]", *rows, ""))
+    return "\n".join(("# convention: paper", "wavevector [1/m],power_spectrum_2d [m^4]", *rows, ""))

@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
-    GOES_WITH,
+    LAYERS_GO_WITH,
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
@@ -120,7 +120,7 @@ def capillary_film_model(closure: Closure = "gaussian") -> ForwardModel:
         chosen={"closure": closure},
         expensive=True,
         required=("film_thickness", SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES, *WATER_INPUTS),
-        goes_with=GOES_WITH,
+        goes_with=LAYERS_GO_WITH,
         optional=BRIDGED_SKIN_DEFAULTS,
         evaluate=partial(_evaluate, closure=closure),
         explain=_explain,

@@ -8,7 +8,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact import effective_modulus, surface_response, twice_stress_variance
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
-    GOES_WITH,
+    LAYERS_GO_WITH,
     PRESSURE_ALTERNATIVES,
     PRESSURE_AND_SLOPE,
     SKIN_DEFAULTS,
@@ -97,7 +97,7 @@ MODEL = ForwardModel(
         "effective_modulus",
     ),
     required=(SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES),
-    goes_with=GOES_WITH,
+    goes_with=LAYERS_GO_WITH,
     optional=SKIN_DEFAULTS,
     accepted=("wavevector", "magnification"),
     exclusive=((("wavevector",), ("magnification",)),),

@@ -55,12 +55,17 @@ GOES_WITH = {
     "poisson_ratio_layer": "layer_thickness",
     "poisson_ratio_bulk": "layer_thickness",
     "poisson_ratio": "young_modulus",
+}
+"""Inputs of one kind of solid, which have no meaning for the other."""
+
+LAYERS_GO_WITH = {
+    **GOES_WITH,
     "young_modulus_dermis": "dermis_thickness",
     "dermis_thickness": "young_modulus_dermis",
     "young_modulus_fat": "fat_thickness",
     "fat_thickness": "young_modulus_fat",
 }
-"""Inputs of one kind of solid, which have no meaning for the other, and the two of a layer."""
+"""The same where there may be more layers, of two inputs each."""
 
 SKIN_DEFAULTS = {
     "poisson_ratio_layer": 0.5,
@@ -98,23 +103,28 @@ def skin_of(inputs: Inputs) -> LayeredSkin | StackedSkin | HomogeneousSolid:
 
     All that lies below the stratum corneum has the Poisson ratio of the bulk.
     """
+    deeper = [names for names in (DERMIS_INPUTS, FAT_INPUTS) if names[0] in inputs]
+    if not deeper:
+        return one_layer_skin_of(inputs)
+    moduli = ["young_modulus_layer", *(modulus for modulus, _ in deeper), "young_modulus_bulk"]
+    ratios = ["poisson_ratio_layer", *["poisson_ratio_bulk"] * (len(deeper) + 1)]
+    thicknesses = ["layer_thickness", *(thickness for _, thickness in deeper)]
+    return StackedSkin(
+        young_moduli=_together(inputs, moduli),
+        poisson_ratios=_together(inputs, ratios),
+        thicknesses=_together(inputs, thicknesses),
+    )
+
+
+def _together(inputs: Inputs, names: list[str]) -> FloatArray:
+    """Inputs along a new last axis."""
+    return np.stack(np.broadcast_arrays(*(inputs[name] for name in names)), axis=-1)
+
+
+def one_layer_skin_of(inputs: Inputs) -> LayeredSkin | HomogeneousSolid:
+    """Return the solid of ``inputs`` of models that know one layer."""
     if "young_modulus" in inputs:
         return HomogeneousSolid(young_modulus=inputs["young_modulus"], poisson_ratio=inputs["poisson_ratio"])
-    deeper = [names for names in (DERMIS_INPUTS, FAT_INPUTS) if names[0] in inputs]
-    if deeper:
-        moduli = ["young_modulus_layer", *(modulus for modulus, _ in deeper), "young_modulus_bulk"]
-        ratios = ["poisson_ratio_layer", *["poisson_ratio_bulk"] * (len(deeper) + 1)]
-        thicknesses = ["layer_thickness", *(thickness for _, thickness in deeper)]
-        return StackedSkin(
-            **{
-                field: np.stack(np.broadcast_arrays(*(inputs[name] for name in names)), axis=-1)
-                for field, names in zip(
-                    ("young_moduli", "poisson_ratios", "thicknesses"),
-                    (moduli, ratios, thicknesses),
-                    strict=True,
-                )
-            }
-        )
     return LayeredSkin(
         young_modulus_layer=inputs["young_modulus_layer"],
         young_modulus_bulk=inputs["young_modulus_bulk"],

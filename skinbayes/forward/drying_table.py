@@ -12,7 +12,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Box, Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Ranges, Tables
 from skinbayes.forward.capillary_film import WATER_INPUTS
-from skinbayes.forward.contact_inputs import nominal_pressure_of, skin_of, spectrum_of
+from skinbayes.forward.contact_inputs import nominal_pressure_of, one_layer_skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.wetting import VERSION_OF_BRIDGES, BridgeTable, bridge_table, skin_groups
@@ -39,7 +39,7 @@ def table_over(
     inputs = corners(known, (*WATER_INPUTS, *CONTACT_INPUTS))
     if inputs is None:
         return None
-    spectrum, skin, load = spectrum_of(inputs, tables), skin_of(inputs), nominal_pressure_of(inputs)
+    spectrum, skin, load = spectrum_of(inputs, tables), one_layer_skin_of(inputs), nominal_pressure_of(inputs)
     wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
     wetting_tension = inputs["surface_tension"] * np.maximum(wetting, 0.0)
     if not wetting_tension.max() > 0:

@@ -7,7 +7,7 @@ from skinbayes.contact.elastoplastic import total_area
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_area import CONTACT_AREA_PROFILE
 from skinbayes.forward.contact_inputs import (
-    GOES_WITH,
+    LAYERS_GO_WITH,
     PRESSURE_ALTERNATIVES,
     SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
@@ -44,7 +44,7 @@ MODEL = ForwardModel(
     summary="friction coefficient of skin on a smooth hard surface: shear stress times area of real contact over load",
     observables=("friction_coefficient",),
     required=("frictional_shear_stress", SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES),
-    goes_with=GOES_WITH,
+    goes_with=LAYERS_GO_WITH,
     optional=SKIN_DEFAULTS,
     evaluate=_evaluate,
     validate=validate_contact,

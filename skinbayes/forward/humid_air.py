@@ -23,7 +23,7 @@ from skinbayes.forward.contact_inputs import (
     PRESSURE_AND_SLOPE,
     SOLID_INPUTS,
     nominal_pressure_of,
-    skin_of,
+    one_layer_skin_of,
     spectrum_of,
 )
 from skinbayes.forward.deduplicated_rows import along_rows
@@ -82,7 +82,7 @@ def _solved(inputs: Inputs, humidity: FloatArray, tables: Tables, closure: Closu
         inputs["temperature"],
         nominal_pressure=inputs["nominal_pressure"],
         spectrum=spectrum_of(inputs, tables),
-        skin=skin_of(inputs),
+        skin=one_layer_skin_of(inputs),
         closure=closure,
         count=False,
         **water,
@@ -108,7 +108,7 @@ def _evaluate(
 ) -> dict[str, FloatArray]:
     known = _with_pressing(inputs)
     load, capillary_pressure = known["nominal_pressure"], _capillary_pressure(known, tables, closure, table)
-    twice_variance = twice_stress_variance(spectrum_of(known, tables), skin_of(known))
+    twice_variance = twice_stress_variance(spectrum_of(known, tables), one_layer_skin_of(known))
     area = total_contact_area(
         load + capillary_pressure,
         twice_variance,

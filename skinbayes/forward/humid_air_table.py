@@ -12,7 +12,7 @@ import numpy as np
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Box, Progress, kept_table
 from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Ranges, Tables
-from skinbayes.forward.contact_inputs import GOES_WITH, nominal_pressure_of, skin_of, spectrum_of
+from skinbayes.forward.contact_inputs import GOES_WITH, nominal_pressure_of, one_layer_skin_of, spectrum_of
 from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
 from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
@@ -50,7 +50,7 @@ class TabulatedBridges:
         gap, strength = kelvin_gap_and_strength(inputs)
         wetted = bridges_form(inputs)
         height = rms_height(spectrum_of(inputs, tables))
-        load, skin = inputs["nominal_pressure"], skin_of(inputs)
+        load, skin = inputs["nominal_pressure"], one_layer_skin_of(inputs)
         same = np.logical_and.reduce([inputs[name] == value for name, value in self.shape.items()])
         parts = (gap, strength, height, load, same, wetted, *vars(skin).values())
         shape = np.broadcast_shapes(*(np.shape(part) for part in parts))
@@ -106,7 +106,7 @@ def bridges_over(
     if not bridges_form(inputs).any():
         return None
     gap, strength = kelvin_gap_and_strength(inputs)
-    spectrum, skin = spectrum_of(inputs, tables), skin_of(inputs)
+    spectrum, skin = spectrum_of(inputs, tables), one_layer_skin_of(inputs)
     height = np.broadcast_to(rms_height(spectrum), gap.shape)
     groups = humid_groups(nominal_pressure_of(inputs), gap, height=height, skin=skin)
     ends = dict(Box.around(groups).ends)
@@ -119,7 +119,7 @@ def bridges_over(
         lambda _: humid_table(
             Box(ends),
             spectrum=spectrum_of(one, tables),
-            skin=skin_of(one),
+            skin=one_layer_skin_of(one),
             area_correction=one["area_correction"],
             progress=progress,
         ),

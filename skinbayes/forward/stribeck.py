@@ -9,7 +9,7 @@ import numpy as np
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
-    GOES_WITH,
+    LAYERS_GO_WITH,
     SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
     spectrum_of,
@@ -96,7 +96,7 @@ def stribeck_model(contact: str = POINT, flow_factors: str = "none") -> ForwardM
             SOLID_ALTERNATIVES,
             SPEED_ALTERNATIVES,
         ),
-        goes_with=GOES_WITH,
+        goes_with=LAYERS_GO_WITH,
         optional={
             **{name: value for name, value in SKIN_DEFAULTS.items() if name != "yield_stress"},
             "velocity_shift_factor": 1.0,

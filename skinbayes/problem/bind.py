@@ -88,7 +88,7 @@ def bind(
     asked = None if conditions is None else user_rows(spec, forward, conditions)
     written, chosen, taken = apply_settings(spec, forward, settings, () if asked is None else asked.values)
     found = choose_surface(spec, chosen or surface)
-    spec = replace(spec, surface_name=found.name, surface_file=found.file)
+    spec = replace(spec, surface_name=found.name, surface_file=found.file, surface_stated=found.stated)
     curves = load_flow_curves(spec, forward, rheology)
     taken |= {REPLACED} if curves else set()
     rows = _rows(spec, forward, data, taken) if asked is None else _Rows(asked.without(taken))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset
@@ -152,10 +153,13 @@ def experiment_of(spec: JointSpec, name: str, forward: ForwardModel | None = Non
     """One experiment as a model of its own, with the parameters and the surface that it takes."""
     one = spec.experiments[name]
     forward = forward or forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
-    surface = (spec.surface_name, spec.surface_file) if forward.uses_surface else (None, None)
+    surface: tuple[Any, ...] = (spec.surface_name, spec.surface_file, spec.surface_stated)
+    if not forward.uses_surface:
+        surface = (None, None, None)
     return replace(
         one,
         parameters=_of_experiment(spec, forward, name),
         surface_name=surface[0],
         surface_file=surface[1],
+        surface_stated=surface[2],
     )

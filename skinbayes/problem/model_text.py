@@ -14,6 +14,7 @@ from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.files.parameter_block import ParameterSpec, parse_parameter
 from skinbayes.files.scatter_block import CORRELATION_KEYS, SCATTER_PARAMETERS, DiscrepancySpec
 from skinbayes.files.spectrum import spectrum_text
+from skinbayes.files.stated_surface import stated_text
 from skinbayes.files.toml_text import toml_text
 from skinbayes.files.written import written_parameter, written_value
 from skinbayes.problem.bound import BoundModel
@@ -70,7 +71,8 @@ def model_content(problem: BoundModel, path: Path, files: dict[Path, str], stem:
     if problem.tables.spectrum is not None:
         content["surface"] = {
             "file": _located(spec.surface_file, path)
-            or beside("spectrum", spectrum_text(problem.tables.spectrum))
+            or beside("spectrum", spectrum_text(problem.tables.spectrum)),
+            **({} if spec.surface_file is None else stated_text(spec.surface_stated)),
         }
     elif spec.surface_name is not None:
         content["surface"] = {"name": spec.surface_name}

@@ -10,6 +10,7 @@ import numpy as np
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.stated_surface import StatedSurface
 from skinbayes.forward import ROUGHNESS_INPUTS
 from skinbayes.roughness import TabulatedSpectrum, named_surface
 
@@ -23,12 +24,14 @@ class Surface:
     name : of a named surface, or None
     spectrum : measured spectrum, or None
     file : its file, or None
+    stated : what the model file says about it, or None
     parameters : the five roughness parameters of a named surface; empty otherwise
     """
 
     name: str | None = None
     spectrum: TabulatedSpectrum | None = None
     file: Path | None = None
+    stated: StatedSurface | None = None
     parameters: tuple[ParameterSpec, ...] = ()
 
 
@@ -39,14 +42,14 @@ def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Su
     """
     if isinstance(given, TabulatedSpectrum):
         return Surface(spectrum=given)
-    name, file = spec.surface_name, spec.surface_file
+    name, file, stated = spec.surface_name, spec.surface_file, spec.surface_stated
     if given is not None:
         is_file = given.endswith(".csv") or Path(given).exists()
-        name, file = (None, Path(given)) if is_file else (given, None)
+        name, file, stated = (None, Path(given), None) if is_file else (given, None, None)
     if file is not None:
         from skinbayes.files.spectrum import read_spectrum
 
-        return Surface(spectrum=read_spectrum(file), file=file.resolve())
+        return Surface(spectrum=read_spectrum(file, stated), file=file.resolve(), stated=stated)
     if name is None:
         return Surface()
     try:

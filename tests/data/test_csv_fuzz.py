@@ -69,7 +69,10 @@ def test_what_is_read_is_physical(tmp_path: Path, quantity: object, column: list
 @quickly
 @given(
     st.sampled_from(
-        ["wavevector [1/m],power_spectrum_2d [m^4]", "wavevector [1/um],power_spectrum_1d [m^3]"]
+        [
+            "# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]",
+            "# convention: one-sided 1-D\nwavevector [1/um],power_spectrum_1d [m^3]",
+        ]
     ),
     st.lists(st.tuples(cells, cells), max_size=4),
 )

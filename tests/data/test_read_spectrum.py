@@ -9,8 +9,8 @@ from skinbayes.errors import InputError
 from skinbayes.files.spectrum import MAX_ROWS, read_spectrum
 from skinbayes.roughness import rms_height
 
-TWO = "wavevector [1/m],power_spectrum_2d [m^4]\n"
-ONE = "wavevector [1/m],power_spectrum_1d [m^3]\n"
+TWO = "# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n"
+ONE = "# convention: two-sided 1-D\nwavevector [1/m],power_spectrum_1d [m^3]\n"
 
 
 def write(tmp_path: Path, text: str) -> Path:
@@ -22,7 +22,10 @@ def write(tmp_path: Path, text: str) -> Path:
 def test_units_and_column_order(tmp_path: Path) -> None:
     metre = read_spectrum(write(tmp_path, "# optical\n" + TWO + "1e3,1e-18\n1e4,1e-20\n1e6,1e-27\n"))
     micro = read_spectrum(
-        write(tmp_path, "power_spectrum_2d [um^4],wavevector [1/um]\n1e6,1e-3\n1e4,1e-2\n1e-3,1\n")
+        write(
+            tmp_path,
+            "# convention = paper\npower_spectrum_2d [um^4],wavevector [1/um]\n1e6,1e-3\n1e4,1e-2\n1e-3,1\n",
+        )
     )
     np.testing.assert_allclose(metre.wavevector, [1e3, 1e4, 1e6])
     np.testing.assert_allclose(micro.wavevector, metre.wavevector, rtol=1e-14)
@@ -60,18 +63,18 @@ BAD = {
     ),
     "no wavevector": ("power_spectrum_2d [m^4]\n1e-18\n", ("line 1", "expected the columns 'wavevector")),
     "twice": ("wavevector [1/m],wavevector [1/um]\n1,1\n", ("line 1", "appears twice")),
-    "one row": (TWO + "1e3,1e-18\n", ("line 2", "single row", "at least two rows")),
+    "one row": (TWO + "1e3,1e-18\n", ("line 3", "single row", "at least two rows")),
     "not increasing": (
         TWO + "1e3,1e-18\n1e5,1e-20\n1e4,1e-21\n",
-        ("line 4", "found 1e4 1/m after 1e5 1/m", "increase"),
+        ("line 5", "found 1e4 1/m after 1e5 1/m", "increase"),
     ),
-    "equal": (TWO + "1e3,1e-18\n1e3,1e-20\n", ("line 3", "increase")),
-    "zero wavevector": (TWO + "0,1e-18\n1e3,1e-20\n", ("line 2", "'wavevector'", "found 0 1/m")),
+    "equal": (TWO + "1e3,1e-18\n1e3,1e-20\n", ("line 4", "increase")),
+    "zero wavevector": (TWO + "0,1e-18\n1e3,1e-20\n", ("line 3", "'wavevector'", "found 0 1/m")),
     "negative power": (
         TWO + "1e3,1e-18\n1e4,-1e-20\n",
-        ("line 3", "'power_spectrum_2d'", "found -1e-20 m^4", "expected"),
+        ("line 4", "'power_spectrum_2d'", "found -1e-20 m^4", "expected"),
     ),
-    "nan": (TWO + "1e3,nan\n1e4,1e-20\n", ("line 2", "'power_spectrum_2d'", "missing value")),
+    "nan": (TWO + "1e3,nan\n1e4,1e-20\n", ("line 3", "'power_spectrum_2d'", "missing value")),
     "not a surface": (ONE + "1e3,1e-18\n1e4,1e-17\n", ("'power_spectrum_1d'", "rises")),
     "empty": ("", ("the file is empty",)),
     "rows of a profile": (
@@ -80,7 +83,7 @@ BAD = {
     ),
     "too many rows": (
         TWO + "".join(f"{q},1e-18\n" for q in range(1000, 1001 + MAX_ROWS["power_spectrum_2d"])),
-        ("line 10002", "more than 10000 rows"),
+        ("line 10003", "more than 10000 rows"),
     ),
 }
 

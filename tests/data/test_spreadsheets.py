@@ -46,7 +46,11 @@ def test_the_same_numbers(content: bytes, tmp_path: Path) -> None:
 
 
 def test_a_unit_of_a_code_page(tmp_path: Path) -> None:
-    content = "wavevector [1/µm];power_spectrum_2d [m^4]\n0,5;1e-20\n1,25;1e-21\n".encode("cp1252")
+    content = (
+        "# convention: paper\nwavevector [1/µm];power_spectrum_2d [m^4]\n0,5;1e-20\n1,25;1e-21\n".encode(
+            "cp1252"
+        )
+    )
     assert read_spectrum(saved(tmp_path, content)).wavevector.tolist() == [0.5e6, 1.25e6]
 
 

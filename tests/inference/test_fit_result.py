@@ -191,7 +191,9 @@ def test_a_run_can_be_moved_and_read_without_its_sources(tmp_path: Path) -> None
     )
     q = np.geomspace(1e3, 1e8, 30)
     rows = "".join(f"{a!r},{1e-20 * (a / 1e4) ** -3.6!r}\n" for a in q.tolist())
-    (sources / "surface.csv").write_text("wavevector [1/m],power_spectrum_2d [m^4]\n" + rows)
+    (sources / "surface.csv").write_text(
+        "# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n" + rows
+    )
     text = FINGER.format(
         parameters='frictional_shear_stress = { lognormal = ["10 MPa", 1.0] }\nyoung_modulus_layer = "7 MPa"',
         noise='family = "lognormal"\nnoise_scale = { half_normal = 0.5 }',

@@ -191,7 +191,9 @@ def test_fingerprint_follows_every_point_of_a_tabulated_spectrum(tmp_path):
         if changed is not None:
             power[changed] *= 1.01
         rows = "".join(f"{a!r},{b!r}\n" for a, b in zip(q.tolist(), power.tolist(), strict=True))
-        (tmp_path / "c.csv").write_text("wavevector [1/m],power_spectrum_2d [m^4]\n" + rows)
+        (tmp_path / "c.csv").write_text(
+            "# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n" + rows
+        )
         seen.add(load_problem(path).fingerprint)
     assert len(seen) == 6
 

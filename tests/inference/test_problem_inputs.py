@@ -153,7 +153,7 @@ def test_a_tabulated_spectrum_is_the_self_affine_one_it_was_made_of(tmp_path):
     power = shape * height**2 / mean_square
     path = tmp_path / "spectrum.csv"
     rows = "".join(f"{a!r},{b!r}\n" for a, b in zip(q.tolist(), power.tolist(), strict=True))
-    path.write_text("wavevector [1/m],power_spectrum_2d [m^4]\n" + rows)
+    path.write_text("# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n" + rows)
     assert_allclose(area(surface=str(path)), area(), rtol=2e-3)
     # heights can be set over a table
     assert_allclose(area(surface=str(path), rms_height="44.8 um"), area(rms_height="44.8 um"), rtol=2e-3)
@@ -177,11 +177,11 @@ def test_a_profile_spectrum_is_converted(tmp_path):
 
     one = np.array([profile(x) for x in q[:-1]])
     (tmp_path / "one.csv").write_text(
-        "wavevector [1/m],power_spectrum_1d [m^3]\n"
+        "# convention: two-sided 1-D\nwavevector [1/m],power_spectrum_1d [m^3]\n"
         + "".join(f"{a!r},{b!r}\n" for a, b in zip(q[:-1].tolist(), one.tolist(), strict=True))
     )
     (tmp_path / "two.csv").write_text(
-        "wavevector [1/m],power_spectrum_2d [m^4]\n"
+        "# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n"
         + "".join(f"{a!r},{power(a)!r}\n" for a in q[:-1].tolist())
     )
     settings = {"wavevector": "1e5 1/m"}
@@ -194,7 +194,7 @@ def test_a_profile_spectrum_is_converted(tmp_path):
 def test_a_table_with_free_height_is_one_batch(tmp_path):
     q = np.geomspace(1e3, 1e8, 60)
     rows = "".join(f"{a!r},{1e-20 * (a / 1e4) ** -3.6!r}\n" for a in q.tolist())
-    (tmp_path / "c.csv").write_text("wavevector [1/m],power_spectrum_2d [m^4]\n" + rows)
+    (tmp_path / "c.csv").write_text("# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n" + rows)
     text = FINGER.format(
         parameters='frictional_shear_stress = { lognormal = ["10 MPa", 1.0] }\nyoung_modulus_layer = "7 MPa"\n'
         'rms_height = { lognormal = ["20 um", 0.5] }',
