@@ -115,15 +115,20 @@ def _show_model(name: str, as_json: bool) -> None:
 
 
 def _told(problem: BoundModel) -> dict[str, Any]:
+    from skinbayes.problem.surface_numbers import surface_numbers
+
     spec = problem.spec
     return {
         "forward": spec.forward, "options": dict(problem.forward.chosen), "dataset": spec.dataset,
         "rows": spec.rows, "observables": spec.observables,
         "noise": spec.noise, "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)),
+        "surface_numbers": surface_numbers(problem, problem.prior_medians()),
     }  # fmt: skip
 
 
 def _print_experiment(problem: BoundModel) -> None:
+    from skinbayes.problem.surface_numbers import surface_sentence
+
     spec = problem.spec
     print_text(f"forward model: {spec.forward} – {problem.forward.summary}")
     for option, value in problem.forward.chosen.items():
@@ -136,6 +141,8 @@ def _print_experiment(problem: BoundModel) -> None:
         print_text(f"observable:    {observable}, noise {noise}")
     if spec.rheology:
         print_text(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
+    for sentence in surface_sentence(problem, problem.prior_medians(), ""):
+        print_text(sentence.replace("Surface: ", "surface:       "))
     for covariate in spec.covariates:
         print_text(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
 

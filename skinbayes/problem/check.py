@@ -22,6 +22,7 @@ from skinbayes.problem.possible import has_value, predicted_everywhere
 from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.rows import data_notes
 from skinbayes.problem.statistical_model import StatisticalModel
+from skinbayes.problem.surface_numbers import surface_sentence
 from skinbayes.units import format_quantity
 
 DRAWS = 1000
@@ -129,6 +130,7 @@ def setup(problem: StatisticalModel) -> tuple[str, ...]:
             if problem.spec.observables
             else "It has no data: it serves 'predict' only."
         )
+    said += surface_sentence(problem, problem.prior_medians(), " at the prior medians" if free else "")
     return tuple(said)
 
 

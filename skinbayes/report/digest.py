@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from skinbayes.fit.predicted import row_names
 from skinbayes.plot.updates import fit_updates
+from skinbayes.problem.surface_numbers import surface_numbers
 from skinbayes.report.discrepancy import discrepancy_findings
 from skinbayes.report.groups import group_findings
 from skinbayes.report.ridges import posterior_ridges
@@ -35,7 +38,8 @@ def digest(fit: Fit, with_priors: bool = True) -> dict[str, Any]:
         quantiles of what the theory misses along it), ``ridges`` (pairs of parameters, exponent, the
         combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
         checks of its residuals along columns that simulated data hardly ever meet, the most surprising first), ``repeats``
-        (observable to the scatter of rows of the same conditions and the misfit beside it). Quantities in SI.
+        (observable to the scatter of rows of the same conditions and the misfit beside it), ``surface`` (rms height, rms slope,
+        true over nominal area and band at the posterior medians; empty where none enters). Quantities in SI.
     """
     names = row_names(fit)
     return {
@@ -56,5 +60,8 @@ def digest(fit: Fit, with_priors: bool = True) -> dict[str, Any]:
             name: [asdict(check) for check in checks if check.found]
             for name, checks in fit.residual_trends.items()
         },
+        "surface": {}
+        if fit.problem is None
+        else surface_numbers(fit.problem, np.median(fit.theta(), axis=0)),
         "repeats": {name: asdict(one) | {"found": one.found} for name, one in fit.repeats.items()},
     }

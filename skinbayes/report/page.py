@@ -6,8 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.predicted import observed_values
+from skinbayes.problem.surface_numbers import surface_sentence
 from skinbayes.report import opening, quality, sentences, tables
 from skinbayes.report.discrepancy import discrepancy_sentences
 from skinbayes.report.figures import pictures
@@ -169,6 +172,8 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
     said = [f"Scatter of the data about the model: {' or '.join(sorted(families))} distribution."]
     if options := fit.provenance.get("options"):
         said.append(f"The theory was evaluated with {', '.join(f'{k} = {v}' for k, v in options.items())}.")
+    if fit.problem is not None:
+        said += surface_sentence(fit.problem, np.median(fit.theta(), axis=0), " at the posterior medians")
     if accuracy := str(fit.provenance.get("accuracy") or ""):
         said.append(f"{accuracy[:1].upper()}{accuracy[1:]}".removesuffix(".") + ".")
     if free > data:

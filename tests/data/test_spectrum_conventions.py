@@ -9,6 +9,7 @@ import skinbayes as sb
 from skinbayes.errors import InputError
 from skinbayes.files.spectrum import read_spectrum, spectrum_text
 from skinbayes.files.stated_surface import StatedSurface
+from skinbayes.problem.surface_numbers import surface_numbers
 from skinbayes.roughness import CONVENTIONS, SelfAffineSpectrum, TabulatedSpectrum, rms_height, rms_slope
 
 SURFACE = SelfAffineSpectrum(
@@ -143,3 +144,16 @@ def test_the_other_program_means_what_is_written_here() -> None:
     assert np.mean(lines[inside] / expected) == pytest.approx(
         CONVENTIONS["contact.engineering 1-D"].times, rel=0.1
     )
+
+
+def test_the_numbers_of_a_surface_are_told(tmp_path: Path) -> None:
+    written(tmp_path, "paper", "convention: paper")
+    (tmp_path / "mine.toml").write_text(MODEL.replace('convention = "contact.engineering"\n', ""))
+    problem = sb.load_problem(tmp_path / "mine.toml")
+    told = surface_numbers(problem, problem.prior_medians())
+    assert told["rms_height"] == pytest.approx(2e-6, rel=1e-3)
+    assert told["total_area_ratio"] == pytest.approx(
+        1 + told["rms_slope"] ** 2 / 2, rel=0.02
+    )  # of small slopes
+    assert [told["wavevector_min"], told["wavevector_max"]] == pytest.approx([1e4, 1e6])
+    assert problem.check().setup[-1].startswith("Surface: rms height 2 µm, rms slope ")
