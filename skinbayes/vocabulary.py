@@ -55,7 +55,7 @@ _ALL = (
         0.0,
         2.0,
         lower_open=False,
-    ),  # fmt: skip
+    ),
     Quantity(
         "inlet_length", "ℓ", "m", "distance from the edge of the contact up to which liquid fills the gap"
     ),

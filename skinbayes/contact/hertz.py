@@ -74,8 +74,8 @@ def sphere_of_contact(
 ) -> FloatArray:
     """Radius of the sphere whose contact of Hertz has a given radius: `sphere_contact` the other way round.
 
-    ``R = 4 E* a³/(3 F_N)``. Where a soft body of any shape touches a flat in a circle under the pressure of Hertz, the gap around the
-    contact is that of this sphere: pressure and modulus determine it.
+    ``R = 4 E* a³/(3 F_N)``. Where a soft body of any shape touches a flat in a circle under the pressure of Hertz, the gap
+    around the contact is that of this sphere: pressure and modulus determine it.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """A finger pad, pressed flat: its nominal contact is given by an area, not by a ball.
 
-Under the pressure of Hertz a contact of radius a leaves around it the gap of the ball of radius ``R = 4 E1* a³/(3 F_N)``, whatever bone and
-shape of the finger made it so wide. With this R for each row the film is that of a ball; but the parabola ends at the
-``inlet_length``, beyond which the finger curves away.
+Under the pressure of Hertz a contact of radius a leaves around it the gap of the ball of radius ``R = 4 E1* a³/(3 F_N)``,
+whatever bone and shape of the finger made it so wide. With this R for each row the film is that of a ball; but the liquid ends
+at the ``inlet_length``, beyond which the finger curves away.
 """
 
 from __future__ import annotations
@@ -68,8 +68,8 @@ def check_one_inlet(ranges: Ranges) -> None:
 def film_ranges(ranges: Ranges, poisson_ratio: float) -> dict[str, tuple[float, float]]:
     """Ranges of similar balls under one load on tissue of one modulus, for a table of films.
 
-    Films depend on E1/E0, F R/E1 ∝ a³ and h R, or h E1/F in its place. In these the area given, the modulus and the load of a pad enter
-    once each; a box of its balls, whose radii go with all of them, would be far too large.
+    Films depend on E1/E0, F R/E1 ∝ a³ and h R, or h E1/F in its place. In these the area given, the modulus and the load of a
+    pad enter once each; a box of its balls, whose radii go with all of them, would be far too large.
 
     Parameters
     ----------

@@ -83,7 +83,7 @@ def _profile(inputs: Inputs, tables: Tables, products: FloatArray, theory: Theor
 
 
 def stribeck_model(contact: str = POINT, flow_factors: str = "none") -> ForwardModel:
-    """Return the forward model of the ball as it is, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
+    """Return the forward model of the ball, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
     theory = Theory(contact, flow_factors)
     pad = contact == PAD
     return ForwardModel(
