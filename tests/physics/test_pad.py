@@ -129,7 +129,9 @@ def test_a_nearly_flat_cylinder_with_an_end_against_another_solution() -> None:
 
     shape, approach = x**2 / 2, 0.0
     for _ in range(40):
-        approach = brentq(lambda high, over: pressure(high + over).sum() * step - np.pi / 2, 2.0, 1e3, args=(shape,))
+        approach = brentq(
+            lambda high, over: pressure(high + over).sum() * step - np.pi / 2, 2.0, 1e3, args=(shape,)
+        )
         found = pressure(approach + shape)
         shape = (shape + x**2 / 2 - kernel @ found) / 2
     wanted = np.interp(0.0, x, approach + shape)
