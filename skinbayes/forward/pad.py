@@ -23,6 +23,8 @@ REFERENCE_LOAD = 1.0
 
 _ROUGHEST = 2.0  # h R/a², the roughness over the height of the ball's edge, in a table
 
+_NODES_PER_LOGARITHM = {"young_modulus_layer": 0.65, "rms_height": 0.85, "sphere_radius": 0.7}
+
 AREA_DEFAULTS = {"nominal_area_ratio": 1.0, "nominal_area_load_exponent": 0.0}
 """The area given is the nominal contact area under the load of its row."""
 
@@ -63,6 +65,15 @@ def check_one_inlet(ranges: Ranges) -> None:
         raise InputError(
             f"inlet_length goes from {low:.3g} to {high:.3g} m, but has to be one fixed length; vary it from one fit to the next"
         )
+
+
+def film_counts(ranges: Ranges) -> dict[str, int]:
+    """Numbers of nodes of the axes of a table of films, for the `film_ranges`, SI."""
+    return {
+        name: 4 + int(np.ceil(density * np.log(ranges[name][1] / ranges[name][0])))
+        for name, density in _NODES_PER_LOGARITHM.items()
+        if name in ranges
+    }
 
 
 def film_ranges(ranges: Ranges, poisson_ratio: float) -> dict[str, tuple[float, float]]:

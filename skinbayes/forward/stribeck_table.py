@@ -12,7 +12,7 @@ from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
-from skinbayes.forward.pad import AREA_DEFAULTS, PAD, check_one_inlet, film_ranges, with_ball
+from skinbayes.forward.pad import AREA_DEFAULTS, PAD, check_one_inlet, film_counts, film_ranges, with_ball
 from skinbayes.forward.stribeck_direct import (
     BALL,
     FIELDS,
@@ -170,6 +170,7 @@ def prepare(
         spectrum=spectrum,
         largest_strain=float(fixed["strain_limit"]),
         contact=POINT if pad else theory.contact,
+        counts=film_counts(held) if pad else None,
         inlet_length=float(fixed["inlet_length"]) if pad else None,
         **numbers,
     )

@@ -34,7 +34,9 @@ class PointSolver:
 
     def __init__(self, grid: PointGrid, law: Law, smallest: float = 0.0, *, endless: bool = True) -> None:
         self.grid, self.law = grid, law
-        self.starts = (0.3, 1.0, 0.1, 3.0) if smallest <= _WIDE else (smallest, 2 * smallest, 4 * smallest)
+        # where liquid ends, films are no wider than that: the slow ones lead to the fast ones
+        wide = endless and smallest > _WIDE
+        self.starts = (smallest, 2 * smallest, 4 * smallest) if wide else (0.3, 1.0, 0.1, 3.0)
         faces, cells = grid.left.size, grid.radius.size
         ones, places = np.ones(faces), np.arange(faces)
         at_left = sparse.csr_array((ones, (places, grid.left)), (faces, cells))
