@@ -50,6 +50,19 @@ _ALL = (
     Quantity("magnification", "ζ", "1", "q/q0", lower=1.0, upper=inf, lower_open=False),
     Quantity("nominal_pressure", "p0", "Pa", "load over nominal contact area"),
     Quantity("nominal_contact_area", "A0", "m^2", "nominal (projected) contact area"),
+    Quantity("nominal_area_ratio", "c_A", "1", "nominal contact area of a pad under 1 N over the area given"),
+    Quantity(
+        "nominal_area_load_exponent",
+        "m_A",
+        "1",
+        "power of the load with which a pad's contact grows",
+        0.0,
+        2.0,
+        lower_open=False,
+    ),
+    Quantity(
+        "inlet_length", "ℓ", "m", "distance from the edge of the contact up to which liquid fills the gap"
+    ),
     _closed("relative_contact_area", "A/A0", "1", "area of real contact over nominal area", 1.0),
     _closed("relative_contact_area_elastic", "A_el/A0", "1", "elastic part of the contact area", 1.0),
     _closed("relative_contact_area_plastic", "A_pl/A0", "1", "plastic part of the contact area", 1.0),

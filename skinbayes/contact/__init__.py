@@ -11,7 +11,7 @@ from skinbayes.contact.elliptic_contact import (
     elliptic_contact,
 )
 from skinbayes.contact.gaps import GapDistribution, gap_distribution
-from skinbayes.contact.hertz import HertzSphere, sphere_contact, sphere_force
+from skinbayes.contact.hertz import HertzSphere, sphere_contact, sphere_force, sphere_of_contact
 from skinbayes.contact.homogeneous import HomogeneousSolid
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.layers import layered_modulus
@@ -89,6 +89,7 @@ __all__ = [
     "relative_contact_area",
     "sphere_contact",
     "sphere_force",
+    "sphere_of_contact",
     "standard_linear_solid",
     "surface_response",
     "total_contact_area",

@@ -69,6 +69,42 @@ def sphere_contact(
         )
 
 
+def sphere_of_contact(
+    normal_force: ArrayLike, contact_radius: ArrayLike, *, reduced_modulus: ArrayLike
+) -> FloatArray:
+    """Radius of the sphere whose contact of Hertz has a given radius: `sphere_contact` the other way round.
+
+    ``R = 4 E* a³/(3 F_N)``. Where a soft body of any shape touches a flat in a circle under the pressure of Hertz, the gap
+    around the contact is that of this sphere: pressure and modulus determine it.
+
+    Parameters
+    ----------
+    normal_force : F_N, N, > 0, any shape
+    contact_radius : a, m, > 0, broadcasts
+    reduced_modulus : E*, Pa, > 0, broadcasts
+
+    Returns
+    -------
+    sphere_radius : R, m, of broadcast shape; nan where an argument is impossible
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), Sect. 4.2, doi 10.1017/CBO9781139171731.
+
+    Examples
+    --------
+    A finger pad of 50 kPa that touches 150 mm² under 1 N:
+
+    >>> import numpy as np
+    >>> print(f"{sphere_of_contact(1.0, np.sqrt(150e-6 / np.pi), reduced_modulus=50e3 / 0.75):.4f} m")
+    0.0293 m
+    """
+    force, radius, modulus = floats(normal_force, contact_radius, reduced_modulus)
+    with np.errstate(all="ignore"):
+        found = 4 / 3 * modulus * radius**3 / _possible(force, radius, modulus)
+        return np.asarray(np.where(found < np.inf, found, np.nan))[()]
+
+
 def sphere_force(
     indentation: ArrayLike, sphere_radius: ArrayLike, *, reduced_modulus: ArrayLike
 ) -> FloatArray:

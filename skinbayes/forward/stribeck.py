@@ -15,6 +15,7 @@ from skinbayes.forward.contact_inputs import (
     spectrum_of,
     validate_contact,
 )
+from skinbayes.forward.pad import AREA_DEFAULTS, PAD, validate_pad, with_ball
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     FLAGS,
@@ -69,6 +70,8 @@ def _grid(inputs: Inputs, tables: Tables) -> FloatArray:
 
 
 def _profile(inputs: Inputs, tables: Tables, products: FloatArray, theory: Theory) -> FloatArray:
+    if theory.contact == PAD:
+        inputs = with_ball(inputs)
     if theory.flow_factors == "none":
         friction = np.asarray(curve_of(inputs, products, tables, theory).friction_coefficient)
     else:  # each vector has its own
@@ -80,18 +83,19 @@ def _profile(inputs: Inputs, tables: Tables, products: FloatArray, theory: Theor
 
 
 def stribeck_model(contact: str = POINT, flow_factors: str = "none") -> ForwardModel:
-    """Return the forward model of the ball as it is, or of the cylinder that the paper takes for it."""
+    """Return the forward model of the ball, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
     theory = Theory(contact, flow_factors)
+    pad = contact == PAD
     return ForwardModel(
         name="stribeck",
         summary="friction of a ball on lubricated rough skin, its boundary, Couette and pressure-flow parts, and the films",
         observables=tuple(FIELDS),
-        options={"contact": CONTACTS, "flow_factors": FLOW_FACTORS},
+        options={"contact": (*CONTACTS, PAD), "flow_factors": FLOW_FACTORS},
         variant=stribeck_model,
         chosen=theory._asdict(),
         required=(
             "frictional_shear_stress",
-            "sphere_radius",
+            *(("nominal_contact_area", "inlet_length") if pad else ("sphere_radius",)),
             "normal_force",
             SOLID_ALTERNATIVES,
             SPEED_ALTERNATIVES,
@@ -101,11 +105,11 @@ def stribeck_model(contact: str = POINT, flow_factors: str = "none") -> ForwardM
             **{name: value for name, value in SKIN_DEFAULTS.items() if name != "yield_stress"},
             "velocity_shift_factor": 1.0,
             "additive_friction": 0.0,
-            "inlet_film_limit": THICKEST_FILM,
+            **(AREA_DEFAULTS if pad else {"inlet_film_limit": THICKEST_FILM}),
             "strain_limit": LARGEST_STRAIN,
         },
         evaluate=partial(_evaluate, theory=theory),
-        validate=validate_contact,
+        validate=validate_pad if pad else validate_contact,
         explain=partial(_explain, theory=theory),
         flags=partial(_flags, theory=theory),
         flag_meanings=FLAGS,

@@ -12,6 +12,7 @@ from skinbayes.contact import cylinder_of_sphere
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import skin_of, spectrum_of
 from skinbayes.forward.deduplicated_rows import along_rows
+from skinbayes.forward.pad import PAD, with_ball
 from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
@@ -67,7 +68,7 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
 
 
 class Theory(NamedTuple):
-    """What is chosen beside the inputs: the contact, "point" or "line", and where flow factors come from."""
+    """What is chosen beside the inputs: the contact, "point", "line" or "pad", and where flow factors come from."""
 
     contact: str = POINT
     flow_factors: str = "none"
@@ -92,11 +93,12 @@ def _ball(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, Any]:
         "velocity_shift_factor",
     )
     return {name: inputs[name] for name in names} | {
-        "contact": theory.contact,
+        "contact": POINT if theory.contact == PAD else theory.contact,
+        "inlet_length": limit_of(inputs, "inlet_length") if theory.contact == PAD else None,
         "flow_factors": _flow_factors(inputs, tables, theory.flow_factors),
         "skin": skin_of(inputs),
         "spectrum": spectrum_of(inputs, tables),
-        "thickest_film": limit_of(inputs, "inlet_film_limit"),
+        "thickest_film": np.inf if theory.contact == PAD else limit_of(inputs, "inlet_film_limit"),
         "largest_strain": limit_of(inputs, "strain_limit"),
     }
 
@@ -135,6 +137,9 @@ def solve(
         Observables of `FIELDS`, flags of `FLAGS` (as 0 and 1), the reasons of silence of `StribeckCurve`, and
         ``speed_viscosity_product`` with the viscosity in the film.
     """
+    if theory.contact == PAD:
+        inputs = with_ball(inputs)
+        names = (*names, "inlet_length")
     known = {name: value for name, value in inputs.items() if name in names}
     for name in ("viscosity", "sliding_speed", "additive_friction"):
         known.pop(name, None)
@@ -156,7 +161,13 @@ def solve(
 
 
 def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
-    """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast."""
+    """Where 3π ηv/f_N is above `NOTABLE_FILM` and `THICKEST_FILM` for products ηv in N/m, shapes broadcast.
+
+    Under a pad, whose liquid ends at the ``inlet_length``, it is nowhere.
+    """
+    if "inlet_length" in inputs:
+        nowhere = np.zeros(np.shape(products), dtype=bool)
+        return {"film_near_inlet": nowhere, "film_beyond_inlet": nowhere}
     modulus = skin_of(inputs).contact_modulus
     cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)
     with np.errstate(invalid="ignore"):

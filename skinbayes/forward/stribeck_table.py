@@ -12,6 +12,7 @@ from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.contact_inputs import GOES_WITH, spectrum_of
+from skinbayes.forward.pad import AREA_DEFAULTS, PAD, check_one_inlet, film_counts, film_ranges, with_ball
 from skinbayes.forward.stribeck_direct import (
     BALL,
     FIELDS,
@@ -26,6 +27,7 @@ from skinbayes.lubrication import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
+    POINT,
     FilmTable,
     FilmTablePlan,
     FlowCurve,
@@ -44,6 +46,7 @@ AFTERWARDS = (
 )  # fmt: skip
 """Inputs that enter exactly, whatever the table."""
 
+_AREA = ("nominal_contact_area", *AREA_DEFAULTS)
 _HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])  # axes of the table, if they vary
 
 
@@ -55,10 +58,12 @@ class TabulatedStribeck:
     ----------
     table : films for all inputs that vary
     names : inputs of the forward model
+    pad : the ball is that of the contact area
     """
 
     table: FilmTable
     names: tuple[str, ...]
+    pad: bool = False
 
     def evaluate(self, inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         """Observables ``(B, N)``; nan for what the table does not hold, which is next to nothing of the prior."""
@@ -82,6 +87,8 @@ class TabulatedStribeck:
         return self._friction(inputs, tables)[1]
 
     def _friction(self, inputs: Inputs, tables: Tables) -> tuple[dict[str, FloatArray], FloatArray]:
+        if self.pad:
+            inputs = with_ball(inputs)
         parameters = {name: inputs[name] for name in _HELD if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
@@ -90,7 +97,7 @@ class TabulatedStribeck:
             frictional_shear_stress=inputs["frictional_shear_stress"],
             velocity_shift_factor=inputs["velocity_shift_factor"],
             everything=True,
-            thickest_film=limit_of(inputs, "inlet_film_limit"),
+            thickest_film=np.inf if self.pad else limit_of(inputs, "inlet_film_limit"),
             largest_strain=limit_of(inputs, "strain_limit"),
         )
         if tables.flow_curves is None:
@@ -130,6 +137,7 @@ def prepare(
     itself is used, which is slow.
     """
     names = model.input_names()
+    check_one_inlet(ranges)
     if theory.flow_factors != "none":
         return replace(
             model,
@@ -138,7 +146,7 @@ def prepare(
     varying = [
         name
         for name, (low, high) in ranges.items()
-        if low != high and name in names and name not in (*_HELD, *AFTERWARDS)
+        if low != high and name in names and name not in (*_HELD, *AFTERWARDS, *_AREA)
     ]
     if varying:
         return replace(
@@ -148,17 +156,22 @@ def prepare(
         )
     fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
     spectrum = spectrum_of(fixed, tables)
-    held = {name: ranges[name] for name in _HELD if name in ranges}
+    held = {name: ranges[name] for name in (*_HELD, *_AREA) if name in ranges}
     held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
     numbers: Any = {
         name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
         for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
     }
+    pad = theory.contact == PAD
+    if pad:
+        held = film_ranges(held, numbers["poisson_ratio_bulk"])
     plan = FilmTablePlan(
         held,
         spectrum=spectrum,
         largest_strain=float(fixed["strain_limit"]),
-        contact=theory.contact,
+        contact=POINT if pad else theory.contact,
+        counts=film_counts(held) if pad else None,
+        inlet_length=float(fixed["inlet_length"]) if pad else None,
         **numbers,
     )
 
@@ -169,7 +182,7 @@ def prepare(
         lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
     )
     assert table is not None
-    tabulated = TabulatedStribeck(table, names)
+    tabulated = TabulatedStribeck(table, names, pad)
     middle, far, worst = (100 * float(error) for error in table.held_out)
     return replace(
         model,

@@ -29,6 +29,7 @@ def contact_films(
     rheology: Rheology | None = None,
     nodes: int = NODES,
     cells: int = CELLS,
+    inlet_length: float | None = None,
 ) -> tuple[LubricatedFilms | LubricatedPointFilms, float]:
     """Films under a ball, and the load over which its friction is counted: F_N, N, or f_N, N/m, of the cylinder.
 
@@ -44,6 +45,7 @@ def contact_films(
             flow_factors=flow_factors,
             rheology=rheology,
             cells=cells,
+            inlet_length=inlet_length,
         ), normal_force
     if contact != LINE:
         raise InputError(f"contact is {contact!r:.60}, but must be {' or '.join(map(repr, CONTACTS))}.")
@@ -58,6 +60,7 @@ def contact_films(
         flow_factors=flow_factors,
         rheology=rheology,
         nodes=nodes,
+        inlet_length=inlet_length,
     ), load
 
 

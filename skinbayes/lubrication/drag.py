@@ -36,6 +36,7 @@ def drag_integrals(
     flow_factors: FlowFactors | None = None,
     rheology: Rheology | None = None,
     speed: FloatArray | None = None,
+    endless: bool = True,
 ) -> DragIntegrals:
     """Integrate the drag over the computed films, and over the parabola before and behind them.
 
@@ -53,6 +54,7 @@ def drag_integrals(
     height : unit of H, b²/Rc, m
     flow_factors, rheology : None for trivial ones and for a Newtonian liquid
     speed : v, m/s, shape ``(K,)``; needed with a rheology
+    endless : count the parabola before and behind, too
 
     Returns
     -------
@@ -102,6 +104,8 @@ def drag_integrals(
     rise = np.where(wet, number[:, None] * grid.spacing * (spread - 1) / mean / conduct, 0.0)
     pressure_flow = (between(2 - weights.pressure) * (middle * fall + rise)).sum(axis=1)
 
+    if not endless:
+        return DragIntegrals(couette, pressure_flow)
     start, end = grid.position[0], grid.position[-1]
     tail = _tail(-start, film[:, 0] - start**2 / 2)
     return DragIntegrals(couette + tail + carried * 4 / (3 * end**3), pressure_flow + number * tail)

@@ -55,6 +55,7 @@ def stribeck_curve_of_liquid(
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
     cells: int = CELLS,
+    inlet_length: float | None = None,
     thickest_film: float = THICKEST_FILM,
     largest_strain: float = LARGEST_STRAIN,
 ) -> tuple[StribeckCurve, EffectiveViscosity]:
@@ -78,6 +79,7 @@ def stribeck_curve_of_liquid(
     flow_factors : of the flow between rough surfaces; None for trivial ones
     nodes : number of places across a line contact, dimensionless
     cells : number of cells of half a point contact, dimensionless
+    inlet_length : distance from the contact, m, at which liquid and drag end; None for liquid without end
     thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
@@ -137,6 +139,7 @@ def stribeck_curve_of_liquid(
             flow_factors=flow_factors,
             nodes=nodes,
             cells=cells,
+            inlet_length=inlet_length,
         )
         with np.errstate(divide="ignore"):
             return np.asarray(np.log(speed / films.central_film))
@@ -156,6 +159,7 @@ def stribeck_curve_of_liquid(
         contact=contact,
         nodes=nodes,
         cells=cells,
+        inlet_length=inlet_length,
         thickest_film=thickest_film,
         largest_strain=largest_strain,
     )

@@ -79,6 +79,7 @@ def lubricated_films(
     flow_factors: FlowFactors | None = None,
     rheology: Rheology | None = None,
     nodes: int = NODES,
+    inlet_length: float | None = None,
 ) -> LubricatedFilms:
     """Mixed lubrication of a rigid cylinder that slides on a soft rough solid (Sect. 6 of the paper, Figs. 11, 13 and 15).
 
@@ -97,6 +98,8 @@ def lubricated_films(
     flow_factors : None for trivial ones
     rheology : viscosity against local shear rate v/u; None for a Newtonian liquid
     nodes : number of places across the contact, dimensionless, ≥ 4
+    inlet_length : m, > 0: liquid fills the gap up to this distance from the edge of the contact of Hertz, and nothing is beyond;
+        None for liquid without end
 
     Returns
     -------
@@ -136,6 +139,7 @@ def lubricated_films(
         flow_factors=flow_factors,
         rheology=rheology,
         nodes=nodes,
+        inlet_length=inlet_length,
     )
 
 
@@ -151,6 +155,7 @@ def films_of(
     rheology: Rheology | None,
     nodes: int,
     respond: Callable[[LineGrid], LineGrid] | None = None,
+    inlet_length: float | None = None,
 ) -> LubricatedFilms:
     """`lubricated_films`, on another solid if ``respond`` puts its kernel, and nodes where it needs them, into a grid."""
     if nodes < 4:
@@ -166,14 +171,15 @@ def films_of(
     )
     rough, tail = (0.0, 0.0) if asperities is None else roughness_of(law)
     number = np.maximum(np.where(known, wanted, wanted[known].min()), _WEAKEST * rough**2)
-    grid = grid_for(float(number.min()), float(number.max()), rough, tail, nodes)
+    end = None if inlet_length is None else 1 + inlet_length / float(hertz.half_width)
+    grid = grid_for(float(number.min()), float(number.max()), rough, tail, nodes, end)
     if respond is not None:
         grid = respond(grid)
     transport = transport_of(
         flow_factors, rheology, height, lubrication_number_per_product(cylinder_radius, hertz)
     )
     thick = [factor * (1.5 + rough) for factor in _THICKER]
-    found, _ = sweep(number, Solver(grid, law), transport, thick)
+    found, _ = sweep(number, Solver(grid, law, endless=end is None), transport, thick)
 
     states = [state if here else None for state, here in zip(found, known, strict=True)]
     missing = np.full(grid.position.size, np.nan)
@@ -183,7 +189,9 @@ def films_of(
     carried = law(film)[0] + 0.0 * film
     fluid = pressure - carried
     speed = None if rheology is None else product / rheology.low_shear_viscosity
-    drag = drag_integrals(grid, film, fluid, number, height, flow_factors, rheology, speed)
+    drag = drag_integrals(
+        grid, film, fluid, number, height, flow_factors, rheology, speed, endless=end is None
+    )
     slope = float(hertz.half_width / cylinder_radius)
     fainter = wanted / number  # 1 but for the weakest flows, of which everything is linear in λ
     return LubricatedFilms(
@@ -212,15 +220,17 @@ def lubrication_number_per_product(cylinder_radius: float, hertz: HertzLine) -> 
     return float(6 * cylinder_radius**2 / (hertz.half_width**3 * hertz.maximum_pressure))
 
 
-def grid_for(smallest: float, largest: float, rough: float, tail: float, nodes: int) -> LineGrid:
+def grid_for(
+    smallest: float, largest: float, rough: float, tail: float, nodes: int, end: float | None = None
+) -> LineGrid:
     """Grid for lubrication numbers from ``smallest`` to ``largest``; ``rough``, ``tail``: H at P_a = 1 and its decay length.
 
     The inlet is as long as fluid pressure (as λ/X³) or asperities (as exp(−X²/2 tail)) reach, the edges are resolved down to
-    the width over which the thinnest film opens, its 2/3rd power.
+    the width over which the thinnest film opens, its 2/3rd power. Inlet and outlet are as long as ``end``, if that is given.
     """
     reach = 6 * np.sqrt(tail)
-    inlet = float(3 + reach + 12 * np.sqrt(largest))
-    outlet = float(2 + reach + 2 * np.sqrt(largest))
+    inlet = float(3 + reach + 12 * np.sqrt(largest)) if end is None else end
+    outlet = float(2 + reach + 2 * np.sqrt(largest)) if end is None else end
     thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
     return line_grid(inlet, outlet, nodes, float(np.clip(1.4 * thinnest ** (2 / 3), 2e-3, 0.15)))
 

@@ -51,7 +51,7 @@ class ContractedFilms:
     speeds : number of speeds, dimensionless
     smooth : films of the smooth ball
     end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line
-        contact and for points, of which no drag is asked
+        contact, and for points, of which no drag is asked, unless it changes their films
     scales : of the contact, shape ``(B, 1)`` or ``(B, N)`` each
     inside : where the table holds the parameters
     """
@@ -77,8 +77,9 @@ class ContractedFilms:
     def _mapped(self, function: Callable[[Any], Any]) -> ContractedFilms:
         names = ("start", "anchor", "unit", "inside")
         scales = Scales(*(function(scale) for scale in self.scales))
+        end = function(self.end) if self.smooth.everywhere else None
         return replace(
-            self, scales=scales, end=None, **{name: function(getattr(self, name)) for name in names}
+            self, scales=scales, end=end, **{name: function(getattr(self, name)) for name in names}
         )
 
     def log_outputs(self, log_number: FloatArray, outputs: Sequence[int]) -> list[FloatArray]:
@@ -203,7 +204,8 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     scales = film_scales(log_parameters, table.poisson_ratio_bulk)
     end = None
     if table.contact == POINT:
-        end = end_coordinate(log_end(scales.strain), table.end_low, table.end_high)
+        log_ends = log_end(log_parameters, table.poisson_ratio_bulk, table.inlet_length)
+        end = end_coordinate(log_ends, table.end_low, table.end_high)
         inside = inside & (np.abs(end) <= 1)
         end = np.where(np.abs(end) <= 1, end, 0.0)
     return ContractedFilms(

@@ -55,6 +55,7 @@ class FilmTablePlan:
     checked : number of random places, dimensionless, at which the table is compared with direct solutions
     cells : of half a point contact, dimensionless
     largest_strain : b/Rc, dimensionless, that the table has to reach
+    inlet_length : distance from a point contact, m, at which liquid and drag end; None for liquid without end
 
     References
     ----------
@@ -82,6 +83,7 @@ class FilmTablePlan:
     checked: int = 120
     cells: int = 400
     largest_strain: float = LARGEST_STRAIN
+    inlet_length: float | None = None
 
     def __post_init__(self) -> None:
         if self.contact not in CONTACTS:
@@ -106,7 +108,8 @@ class FilmTablePlan:
             stress_scale=float(
                 np.sqrt(twice_stress_variance(self.spectrum, skin)) / (layer * self._rms_height)
             ),
-            radius_matters=self.contact == POINT,
+            # where liquid ends at a given distance from the contact, its radius, through F R/E1, says where
+            radius_matters=self.contact == POINT and self.inlet_length is None,
         )
 
     def key(self) -> dict[str, Any]:
@@ -127,6 +130,7 @@ class FilmTablePlan:
             **{name: float(getattr(self, name)) for name in numbers},
             **{name: getattr(self, name) for name in ("speeds", "nodes", "checked", "contact")},
             **({"cells": self.cells} if self.contact == POINT else {}),
+            **({} if self.inlet_length is None else {"inlet_length": self.inlet_length}),
         }
 
     def ball(self, log_parameters: FloatArray) -> Ball:
@@ -156,6 +160,7 @@ class FilmTablePlan:
             float(cylinder.cylinder_radius),
             float(cylinder.load_per_length),
             modulus,
+            self.inlet_length,
         )
 
     @cached_property

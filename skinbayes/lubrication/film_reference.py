@@ -9,11 +9,15 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray, IndexArray
 from skinbayes.contact.line_contact import line_contact
+from skinbayes.emulation.chebyshev import grid_coefficients
 from skinbayes.lubrication._uniform_spline import cell_of, spline_coefficients
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
 
 LOWEST, HIGHEST = float(np.log(1e-6)), float(np.log(2e4))
 """ln λ between which smooth films are solved; below, each output is a power of λ."""
+
+HIGHEST_WITH_END = float(np.log(1e8))
+"""ln λ up to which they are where the liquid ends: a contact that is nearly flat has a large λ."""
 
 STEP = 0.4
 """Of ln λ between solved films."""
@@ -34,11 +38,13 @@ class SmoothFilms:
     coefficients : of cubic B-splines of ln of the outputs, dimensionless, shape ``(2 + 2 T, S + 2)``, one after the other
     lowest : ln λ of the first point, dimensionless
     step : spacing of ln λ, dimensionless
+    everywhere : all four outputs are series of the end, shape ``(4 T, S + 2)``: the liquid itself ends there
     """
 
     coefficients: FloatArray
     lowest: float
     step: float
+    everywhere: bool = False
 
     @property
     def highest(self) -> float:
@@ -65,9 +71,9 @@ class SmoothFilms:
         chebyshev = [] if terms == 1 or end is None else _chebyshev(end, terms)
         found: list[FloatArray] = []
         for output in outputs:
-            first = (0, 1, 1 + terms, 1 + 2 * terms)[output]
+            first = output * terms if self.everywhere else (0, 1, 1 + terms, 1 + 2 * terms)[output]
             value, rate = self._spline(first, cell, place, below, slope)
-            for more, polynomial in enumerate(chebyshev if output in (1, 2) else ()):
+            for more, polynomial in enumerate(chebyshev if self.everywhere or output in (1, 2) else ()):
                 further, further_rate = self._spline(first + 1 + more, cell, place, below, slope)
                 value = value + polynomial * further
                 if rate is not None and further_rate is not None:
@@ -95,7 +101,8 @@ class SmoothFilms:
     @property
     def terms(self) -> int:
         """T, number of polynomials of the end of the drag, dimensionless; 1 if it has none."""
-        return (self.coefficients.shape[0] - 2) // 2
+        rows = self.coefficients.shape[0]
+        return rows // 4 if self.everywhere else (rows - 2) // 2
 
     @cached_property
     def _cubics(self) -> FloatArray:
@@ -124,21 +131,36 @@ def _chebyshev(place: FloatArray, count: int) -> list[FloatArray]:
 @lru_cache(maxsize=1)
 def smooth_films() -> SmoothFilms:
     """Solve the smooth films, once in a process (0.3 s)."""
-    count = round((HIGHEST - LOWEST) / STEP) + 1
+    return SmoothFilms(spline_coefficients(_all_outputs(None)), LOWEST, STEP)
+
+
+def smooth_films_with_end(ends: FloatArray) -> SmoothFilms:
+    """Smooth films whose liquid ends at X = ``ends``, dimensionless, at the `zeros` of the coordinate of the end."""
+    logs = np.array([_all_outputs(float(end)) for end in ends])
+    series = [grid_coefficients(part, ends=False) for part in logs.swapaxes(0, 1)]
+    return SmoothFilms(spline_coefficients(np.concatenate(series)), LOWEST, STEP, True)
+
+
+def _all_outputs(end: float | None) -> FloatArray:
+    """ln of the four outputs at all ln λ, shape ``(4, S)``."""
+    count = round(((HIGHEST if end is None else HIGHEST_WITH_END) - LOWEST) / STEP) + 1
     log_number = np.asarray(LOWEST + STEP * np.arange(count), dtype=np.float64)
-    parts = [_outputs(log_number[start : start + _PART]) for start in range(0, count, _PART)]
-    return SmoothFilms(spline_coefficients(np.concatenate(parts, axis=1)), LOWEST, STEP)
+    # where liquid ends, all films share a grid, on which the slow ones lead to the fast ones
+    part = _PART if end is None else count
+    parts = [_outputs(log_number[start : start + part], end) for start in range(0, count, part)]
+    return np.concatenate(parts, axis=1)
 
 
-def _outputs(log_number: FloatArray) -> FloatArray:
+def _outputs(log_number: FloatArray, end: float | None) -> FloatArray:
     """ln of the four outputs, shape ``(4, K)``; a ball with b/Rc = 1 makes films and friction those without dimension."""
     modulus = 4 / np.pi
     hertz = line_contact(1.0, 1.0, reduced_modulus=modulus)
     products = np.exp(log_number) / lubrication_number_per_product(1.0, hertz)
-    films = lubricated_films(
-        products, cylinder_radius=1.0, load_per_length=1.0, reduced_modulus=modulus, nodes=_NODES
-    )
     height, slope = float(hertz.half_width**2), float(hertz.half_width)
+    films = lubricated_films(
+        products, cylinder_radius=1.0, load_per_length=1.0, reduced_modulus=modulus, nodes=_NODES,
+        inlet_length=None if end is None else (end - 1) * slope,
+    )  # fmt: skip
     return np.log(
         np.array(
             [

@@ -45,6 +45,7 @@ class Ball:
     cylinder_radius : Rc, m
     load_per_length : f_N, N/m
     reduced_modulus : E1*, Pa
+    inlet_length : distance from the contact, m, at which liquid and drag end; None for liquid without end
     """
 
     law: AsperityLaw
@@ -56,6 +57,7 @@ class Ball:
     cylinder_radius: float
     load_per_length: float
     reduced_modulus: float
+    inlet_length: float | None = None
 
     def outputs(
         self, log_number: FloatArray, nodes: int, *, contact: str = LINE, cells: int = CELLS
@@ -82,6 +84,7 @@ class Ball:
                 contact=contact,
                 nodes=nodes + more,
                 cells=cells + 4 * more,
+                inlet_length=self.inlet_length,
             )
             area = relative_contact_area(
                 films.asperity_pressure, self.twice_variance, area_correction=self.area_correction

@@ -11,7 +11,7 @@ from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_parameters
 from skinbayes.lubrication.film_reference import SmoothFilms
 
-VERSION = 1
+VERSION = 2
 """Of what the numbers in a table mean; tables of another version are built anew."""
 
 CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
@@ -44,6 +44,7 @@ class FilmTable:
     speeds : S, number of speeds, dimensionless
     end_low, end_high : ln of the smallest and largest radius over that of the contact at which the drag of a ball ends,
         dimensionless; 0 of a line contact
+    inlet_length : distance from the contact, m, at which liquid and drag end; None where the ball does
     smooth : films of the smooth ball, which the outputs but the boundary term and the load fraction are relative to
     held_out : median, 99th percentile and largest relative error of the friction coefficient at random places,
         dimensionless, shape ``(3,)``
@@ -57,6 +58,7 @@ class FilmTable:
     speeds: int
     end_low: float
     end_high: float
+    inlet_length: float | None
     smooth: SmoothFilms
     held_out: FloatArray
     held_out_count: int

@@ -18,16 +18,18 @@ from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_plan import FilmTablePlan
 from skinbayes.lubrication.film_point import (
+    TERMS,
     corrected,
     correction,
     end_coordinate,
     log_end,
+    log_radius_over_half_width,
     relative_outputs,
     similar_speeds,
     smooth_point_films,
     whole_drag,
 )
-from skinbayes.lubrication.film_reference import SmoothFilms, smooth_films
+from skinbayes.lubrication.film_reference import SmoothFilms, smooth_films, smooth_films_with_end
 from skinbayes.lubrication.film_sweeps import FAINT, HALF, Ball
 from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
@@ -112,8 +114,11 @@ def build_film_table(
         if plan.contact == LINE:
             outputs = relative_outputs(outputs, numbers, smooth)
         else:
-            outputs = relative_outputs(whole_drag(outputs, numbers), numbers, _with_whole_drag(smooth))
             ends = _ends_of(plan)
+            there = _end_coordinates(plan, plan.axes.representative(places), ends)
+            outputs = relative_outputs(
+                whole_drag(outputs, numbers), numbers, _smooth_cylinders(plan, ends), there
+            )
             addition, smooth, similar = _correction(plan, solve, point_places, anchor_terms, grid, ends)
             shape = _corrected_at(axes.counts)
             terms = grid_coefficients(similar.reshape(*shape, 2), ends=False)
@@ -135,6 +140,7 @@ def build_film_table(
             contact=plan.contact,
             end_low=ends[0],
             end_high=ends[1],
+            inlet_length=plan.inlet_length,
             smooth=smooth,
             poisson_ratio_bulk=plan.poisson_ratio_bulk,
             held_out=np.full(3, np.nan),
@@ -171,16 +177,39 @@ def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
         [0.0, 0.0, 0.0, radius, product - radius, 0.0]
         for radius, product in zip(radii, products, strict=True)
     ]
-    ends = log_end(film_scales(list(np.array(places).T), plan.poisson_ratio_bulk).strain)
+    ends = log_end(list(np.array(places).T), plan.poisson_ratio_bulk, plan.inlet_length)
     return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
 
 
 def _with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
     """Smooth films of a cylinder with the whole drag of the liquid in place of the pressure flow."""
     log_number = smooth.lowest + smooth.step * np.arange(smooth.coefficients.shape[1] - 2)
-    values = np.array(smooth(log_number, range(4)))
-    values[2] = np.logaddexp(values[2], log_number + values[1] - np.log(3.0))
-    return SmoothFilms(spline_coefficients(values), smooth.lowest, smooth.step)
+    terms = smooth.terms
+    series = []
+    for end in zeros(terms) if smooth.everywhere else [0.0]:
+        values = np.array(smooth(log_number, range(4), end=np.full(log_number.shape, end)))
+        values[2] = np.logaddexp(values[2], log_number + values[1] - np.log(3.0))
+        series.append(values)
+    coefficients = [grid_coefficients(part, ends=False) for part in np.array(series).swapaxes(0, 1)]
+    return replace(smooth, coefficients=spline_coefficients(np.concatenate(coefficients)))
+
+
+def _smooth_cylinders(plan: FilmTablePlan, ends: tuple[float, float]) -> SmoothFilms:
+    """Smooth films of the cylinders whose liquid ends where that of the balls does."""
+    if plan.inlet_length is None:
+        return _with_whole_drag(smooth_films())
+    places = ends[0] + (ends[1] - ends[0]) * (zeros(TERMS) + 1) / 2
+    return _with_whole_drag(
+        smooth_films_with_end(1 + np.expm1(places) * np.exp(log_radius_over_half_width()))
+    )
+
+
+def _end_coordinates(
+    plan: FilmTablePlan, log_parameters: FloatArray, ends: tuple[float, float]
+) -> FloatArray:
+    """The end of the drag of balls, −1 … 1, for ln of their parameters, SI, shape ``(M, 6)``."""
+    log_ends = log_end(list(log_parameters.T), plan.poisson_ratio_bulk, plan.inlet_length)
+    return end_coordinate(log_ends, *ends)
 
 
 def _correction(
@@ -210,10 +239,10 @@ def _correction(
     there = similar[:, :1] + similar[:, 1:] * grid[::_EVERY]
     few = line_anchors[:, :1] + line_anchors[:, 1:] * there
     point = solved("balls", few, POINT, plan.cells)
-    smooth = smooth_point_films(*ends)
-    end = end_coordinate(log_end(film_scales(list(parameters.T), plan.poisson_ratio_bulk).strain), *ends)
+    smooth = smooth_point_films(*ends, endless=plan.inlet_length is None)
+    end = _end_coordinates(plan, parameters, ends)
     point = relative_outputs(point, few, smooth, end)
-    line = relative_outputs(whole_drag(line, numbers), numbers, _with_whole_drag(smooth_films()))
+    line = relative_outputs(whole_drag(line, numbers), numbers, _smooth_cylinders(plan, ends), end)
     return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 

@@ -38,12 +38,15 @@ class FilmState(NamedTuple):
 
 
 class Solver:
-    """Newton iteration on one grid for one asperity law; keeps work arrays, otherwise without state."""
+    """Newton iteration on one grid for one asperity law; keeps work arrays, otherwise without state.
+
+    Liquid that is not ``endless`` has no pressure at the first node and none before.
+    """
 
     # neither stiff nor far from Hertz; the active set may run in a circle from a guess far away
     starts = (1.0, 2.0, 0.5, 5.0, 0.1)
 
-    def __init__(self, grid: LineGrid, law: Law) -> None:
+    def __init__(self, grid: LineGrid, law: Law, *, endless: bool = True) -> None:
         count = grid.position.size
         self.grid, self.law = grid, law
         self.parabola = np.square(grid.position) / 2
@@ -54,6 +57,8 @@ class Solver:
         self._diagonal = np.arange(count)
         # fluid pressure before the first node, where H ≈ X²/2 and P_f′ = λ/H²: 4λ/(3|X|³), and the load it carries
         self._before, self._load_before = 4 / (3 * -(grid.position[0] ** 3)), 2 / (3 * grid.position[0] ** 2)
+        if not endless:
+            self._before = self._load_before = 0.0
 
     def guess(self, number: float, thick: float) -> FilmState:
         """A first guess: the pressure of Hertz on a thick film."""

@@ -32,7 +32,8 @@ CELLS = 360
 _RINGS_PER_RAY = 2.5
 _APPROACHES = (0.0, 1.0, 3.0)  # of first guesses, beside a film thicker than the asperities
 _WEAKEST = 1e-7  # of the squared roughness: below this λ everything is linear in λ
-_FASTEST = 1e5  # λ beyond which the inlet is longer than any grid
+_FASTEST = 1e5  # λ beyond which an inlet without end is longer than any grid
+_FASTEST_WITH_END = 1e10
 _SHORTEST_REACH = 20.0
 _WIDE, _WIDER = (
     2.0,
@@ -85,6 +86,7 @@ def lubricated_point_films(
     flow_factors: FlowFactors | None = None,
     rheology: Rheology | None = None,
     cells: int = CELLS,
+    inlet_length: float | None = None,
 ) -> LubricatedPointFilms:
     """Mixed lubrication of a rigid ball that slides on a soft rough solid, solved in two dimensions (Sect. 6 of the paper).
 
@@ -103,6 +105,8 @@ def lubricated_point_films(
     flow_factors : None for trivial ones
     rheology : viscosity against local shear rate v/u; None for a Newtonian liquid
     cells : number of cells of half the plane, dimensionless, ≥ 40, about
+    inlet_length : m, > 0: liquid fills the gap up to this distance from the edge of the contact of Hertz, and nothing is beyond;
+        None for liquid without end, with drag up to the edge of the ball
 
     Returns
     -------
@@ -111,13 +115,14 @@ def lubricated_point_films(
     Raises
     ------
     InputError
-        if there are fewer than 40 cells
+        if there are fewer than 40 cells, or the inlet has no length
 
     Notes
     -----
     The parabola goes on without end, but shear stress and pressure flow are counted up to the edge of the ball only, r = R: their
     sums would grow without bound as ln r. Where the contact is so wide that it nears the edge, the end keeps
-    outside of it, at ``(R⁴ + a⁴)^(1/4)``: 1 % beyond R at a/R = 0.45. The reference pressure is that of the cavity.
+    outside of it, at ``(R⁴ + a⁴)^(1/4)``: 1 % beyond R at a/R = 0.45. The reference pressure is that of the cavity. With an
+    ``inlet_length`` the grid, the pressure of the liquid and its drag all end at that distance from the contact.
 
     References
     ----------
@@ -133,24 +138,36 @@ def lubricated_point_films(
     product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
     if cells < 40:
         raise InputError(f"cells is {cells}, but must be at least 40.")
+    if inlet_length is not None and not 0 < inlet_length < np.inf:
+        raise InputError(f"inlet_length is {inlet_length:g} m, but must be finite and > 0 m.")
     hertz = sphere_contact(normal_force, sphere_radius, reduced_modulus=reduced_modulus)
     radius, peak = float(hertz.contact_radius), float(hertz.maximum_pressure)
     slope, height = radius / sphere_radius, radius * radius / sphere_radius
     per_product = point_number_per_product(radius, peak, sphere_radius)
     wanted = per_product * product
-    known = (wanted > 0 if asperities is None else wanted >= 0) & (wanted <= _FASTEST)
+    known = (wanted > 0 if asperities is None else wanted >= 0) & (
+        wanted <= (_FASTEST if inlet_length is None else _FASTEST_WITH_END)
+    )
     known = known & (0 < normal_force < np.inf)
     law: Law = no_asperities if asperities is None else asperities.scaled(height, peak)
     rough, tail = (0.0, 0.0) if asperities is None else roughness_of(law)
     number = np.maximum(wanted, _WEAKEST * rough**2)
-    end = end_of_drag(slope)
+    end = end_of_drag(slope) if inlet_length is None else 1 + inlet_length / radius
     transport = transport_of(flow_factors, rheology, height, per_product)
     speed = None if rheology is None else product / rheology.low_shear_viscosity
     count = _rings(cells) * _rays(cells)
     films = _nothing(product.size, count)._replace(lubrication_number=wanted)
     fainter = wanted / number  # 1 but for the weakest flows, of which everything is linear in λ
     for rows, grid, film, pressure in point_sweeps(
-        number, known, law, transport, rough=rough, tail=tail, end=end, cells=cells
+        number,
+        known,
+        law,
+        transport,
+        rough=rough,
+        tail=tail,
+        end=end,
+        cells=cells,
+        endless=inlet_length is None,
     ):
         carried = law(film)[0] + 0.0 * film
         fluid = pressure - carried
@@ -193,11 +210,15 @@ def point_sweeps(
     tail: float,
     end: float,
     cells: int,
+    endless: bool = True,
 ) -> Iterator[tuple[IndexArray, PointGrid, FloatArray, FloatArray]]:
-    """Rows of lubrication numbers that share a grid, the grid, and their H and P, dimensionless, shape ``(K, n)``."""
-    for rows in _by_reach(number, known):
-        grid = grid_of(number[rows], rough, tail, end=end, cells=cells)
-        solver = PointSolver(grid, law, float(number[rows].min()))
+    """Rows of lubrication numbers that share a grid, the grid, and their H and P, dimensionless, shape ``(K, n)``.
+
+    Unless the liquid is ``endless`` it ends where the drag does.
+    """
+    for rows in _by_reach(number, known) if endless else [np.flatnonzero(known)]:
+        grid = grid_of(number[rows], rough, tail, end=end, cells=cells, endless=endless)
+        solver = PointSolver(grid, law, float(number[rows].min()), endless=endless)
         states, _ = sweep(number[rows], solver, transport, (rough, *(rough + more for more in _APPROACHES)))
         missing = np.full(grid.radius.size, np.nan)
         yield (
@@ -224,20 +245,22 @@ def _by_reach(number: FloatArray, known: BoolArray) -> list[IndexArray]:
     return [np.flatnonzero(known & (group == value)) for value in np.unique(group[known])]
 
 
-def grid_of(number: FloatArray, rough: float, tail: float, *, end: float, cells: int) -> PointGrid:
+def grid_of(
+    number: FloatArray, rough: float, tail: float, *, end: float, cells: int, endless: bool = True
+) -> PointGrid:
     """Grid for lubrication numbers of shape ``(K,)``; ``rough``, ``tail``: H at P_a = 1 and its decay length.
 
     It reaches as far as fluid pressure (as λ/r³), asperities (as exp(−r²/2 tail)) or the drag that is counted. The rings are
     finest at the edge of the contact, down to the width over which the thinnest film opens; where the film of a rigid ball, which
-    is 0.6 λ wide, is wider than the contact, they are as wide as a part of it.
+    is 0.6 λ wide, is wider than the contact, they are as wide as a part of it. Liquid that is not ``endless`` reaches to ``end``.
     """
     smallest, largest = float(number.min()), float(number.max())
     reach = max(_SHORTEST_REACH, 1.1 * end, 3 + 6 * np.sqrt(tail), 12 * largest)
     thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
     edge = float(np.clip(2.4 * thinnest ** (2 / 3), 0.03, 0.15))
-    if smallest > _WIDE:
+    if endless and smallest > _WIDE:
         edge = max(edge, _PART_OF_WIDTH * smallest)
-    return point_grid(_rings(cells), _rays(cells), edge, float(reach))
+    return point_grid(_rings(cells), _rays(cells), edge, float(reach if endless else end))
 
 
 def _rays(cells: int) -> int:

@@ -29,19 +29,21 @@ _WIDE = 2.0  # λ beyond which the ball is taken as rigid in a first guess
 class PointSolver:
     """Newton iteration on one grid for one asperity law; keeps work arrays, otherwise without state.
 
-    ``smallest`` is the smallest λ that is wanted.
+    ``smallest`` is the smallest λ that is wanted. Liquid that is not ``endless`` has no pressure in the rim and none beyond.
     """
 
-    def __init__(self, grid: PointGrid, law: Law, smallest: float = 0.0) -> None:
+    def __init__(self, grid: PointGrid, law: Law, smallest: float = 0.0, *, endless: bool = True) -> None:
         self.grid, self.law = grid, law
-        self.starts = (0.3, 1.0, 0.1, 3.0) if smallest <= _WIDE else (smallest, 2 * smallest, 4 * smallest)
+        # where liquid ends, films are no wider than that: the slow ones lead to the fast ones
+        wide = endless and smallest > _WIDE
+        self.starts = (smallest, 2 * smallest, 4 * smallest) if wide else (0.3, 1.0, 0.1, 3.0)
         faces, cells = grid.left.size, grid.radius.size
         ones, places = np.ones(faces), np.arange(faces)
         at_left = sparse.csr_array((ones, (places, grid.left)), (faces, cells))
         at_right = sparse.csr_array((ones, (places, grid.right)), (faces, cells))
         self.balance = sparse.csr_array((at_left - at_right).T)  # flows to what leaves each cell
         self._touching = sparse.csr_array((at_left + at_right).T)
-        far = far_inlet(grid.angle)
+        far = far_inlet(grid.angle) if endless else np.zeros(grid.angle.size)
         self._rim_pressure = np.where(grid.rim, far / grid.radius**3, 0.0)
         self._load_outside = 2 * np.pi / grid.rays * far[grid.rim].sum() / grid.faces[-1]
         self._parabola = np.square(grid.radius) / 2

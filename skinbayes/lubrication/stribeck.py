@@ -120,6 +120,7 @@ def stribeck_curve(
     rheology: Rheology | None = None,
     nodes: int = NODES,
     cells: int = CELLS,
+    inlet_length: float | None = None,
     thickest_film: float = THICKEST_FILM,
     largest_strain: float = LARGEST_STRAIN,
 ) -> StribeckCurve:
@@ -145,6 +146,7 @@ def stribeck_curve(
     rheology : viscosity against shear rate v/u; None for a Newtonian liquid
     nodes : number of places across a line contact, dimensionless
     cells : number of cells of half a point contact, dimensionless
+    inlet_length : distance from the contact, m, at which liquid and drag end; None for liquid without end
     thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
     largest_strain : b/Rc, dimensionless, beyond which nothing is predicted
 
@@ -195,6 +197,7 @@ def stribeck_curve(
     batch = inputs[0].shape[:-1]
     liquid = {
         "flow_factors": flow_factors, "rheology": rheology, "contact": contact, "nodes": nodes, "cells": cells,
+        "inlet_length": inlet_length,
     }  # fmt: skip
     cases = np.concatenate(inputs[:-1], axis=-1).reshape(-1, len(inputs) - 1)
     points = (np.broadcast_to(part, (*batch, part.shape[-1])) for part in table)
