@@ -1,6 +1,7 @@
 """Contact mechanics of skin and other solids: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
+from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
 from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area, total_contact_area
 from skinbayes.contact.elliptic_contact import (
@@ -49,6 +50,7 @@ from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 
 __all__ = [
     "AREA_CORRECTION",
+    "ConstantLossMaterial",
     "ContactArea",
     "Creep",
     "ElasticSolid",

@@ -8,8 +8,13 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.moving_kernel import MovingKernel
-from skinbayes.contact.viscoelastic import ViscoelasticMaterial
-from skinbayes.contact.viscoelastic_line_contact import Passage, edges, hysteresis_integral, passage
+from skinbayes.contact.viscoelastic_line_contact import (
+    AnyMaterial,
+    AnyPassage,
+    edges,
+    hysteresis_integral,
+    passage,
+)
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.film import NODES, LubricatedFilms, films_of
@@ -60,7 +65,7 @@ def viscoelastic_films(
     *,
     load_per_length: float,
     cylinder_radius: float,
-    material: ViscoelasticMaterial,
+    material: AnyMaterial,
     asperities: AsperityLaw | None = None,
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
@@ -123,30 +128,50 @@ def viscoelastic_films(
         scales = passage(material, value, load_per_length=load_per_length, cylinder_radius=cylinder_radius)
         if not (scales.half_width > 0 and scales.half_width < np.inf):
             continue
-        stage = _Stage(scales)
-        films = films_of(
+        solved = films_on(
+            scales,
             value * viscosities[rows],
             load_per_length=load_per_length,
             cylinder_radius=cylinder_radius,
-            reduced_modulus=scales.modulus,
             asperities=asperities,
             flow_factors=flow_factors,
-            rheology=None,
             nodes=nodes,
-            respond=stage.respond,
-        )
-        solved = stage.part(
-            films, scales.modulus * scales.half_width / (2 * cylinder_radius), cylinder_radius
         )
         for name, part in solved.items():
             found[name][rows] = part
     return ViscoelasticFilms(**found)
 
 
+def films_on(
+    scales: AnyPassage,
+    product: FloatArray,
+    *,
+    load_per_length: float,
+    cylinder_radius: float,
+    asperities: AsperityLaw | None,
+    flow_factors: FlowFactors | None = None,
+    nodes: int,
+) -> dict[str, FloatArray | float]:
+    """Fields of `ViscoelasticFilms` at products ηv, N/m, shape ``(K,)``, of a solid that passes with one memory."""
+    stage = _Stage(scales)
+    films = films_of(
+        product,
+        load_per_length=load_per_length,
+        cylinder_radius=cylinder_radius,
+        reduced_modulus=scales.modulus,
+        asperities=asperities,
+        flow_factors=flow_factors,
+        rheology=None,
+        nodes=nodes,
+        respond=stage.respond,
+    )
+    return stage.part(films, scales.modulus * scales.half_width / (2 * cylinder_radius), cylinder_radius)
+
+
 class _Stage:
     """One speed: puts its kernel into a grid and measures the hysteresis of what was solved on it."""
 
-    def __init__(self, scales: Passage) -> None:
+    def __init__(self, scales: AnyPassage) -> None:
         self._scales = scales
         self._kernel: MovingKernel | None = None
         self._position = np.zeros(0)

@@ -11,6 +11,7 @@ from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.line_contact import EquivalentCylinder, cylinder_of_sphere, line_contact
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.contact.viscoelastic_line_contact import modulus_in_contact
 from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES
@@ -178,11 +179,12 @@ def _contact(
     speed: float, force: float, radius: float, skin: ViscoelasticSkin
 ) -> tuple[EquivalentCylinder, float, float]:
     """Cylinder of Eq. 9, its b/Rc and v/b (1/s), with the modulus of the tissue at that frequency."""
-    modulus = float(skin.bulk.reduced_modulus(0.0).real)
-    for _ in range(60):
-        cylinder = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
-        half_width = float(line_contact(*cylinder, reduced_modulus=modulus).half_width)
-        last, modulus = modulus, float(abs(skin.bulk.reduced_modulus(speed / half_width)))
-        if not abs(modulus / last - 1) > 1e-12:
-            break
+    def cylinder_on(modulus: float) -> EquivalentCylinder:
+        return cylinder_of_sphere(force, radius, reduced_modulus=modulus)
+
+    def half_width_of(modulus: float) -> float:
+        return float(line_contact(*cylinder_on(modulus), reduced_modulus=modulus).half_width)
+
+    modulus, half_width = modulus_in_contact(skin.bulk, speed, half_width_of)
+    cylinder = cylinder_on(modulus)
     return cylinder, half_width / float(cylinder.cylinder_radius), speed / half_width
