@@ -36,6 +36,7 @@ from skinbayes.lubrication import (
     tabulated_friction,
     tabulated_friction_of_liquids,
 )
+from skinbayes.lubrication.viscoelastic_correction import RememberingTissue
 from skinbayes.roughness import rms_height
 
 AFTERWARDS = (
@@ -44,7 +45,8 @@ AFTERWARDS = (
 )  # fmt: skip
 """Inputs that enter exactly, whatever the table."""
 
-_HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])  # axes of the table, if they vary
+HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])  
+"""Inputs that are axes of the table, if they vary."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,15 +61,21 @@ class TabulatedStribeck:
 
     table: FilmTable
     names: tuple[str, ...]
+    fields = FIELDS  # observables and the fields of the friction they are
+
+    def skin(self, inputs: Inputs) -> tuple[Inputs, RememberingTissue | None]:
+        """Inputs with the moduli that the contact meets, and the memory of the tissue; None if it is elastic."""
+        return inputs, None
 
     def evaluate(self, inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         """Observables ``(B, N)``; nan for what the table does not hold, which is next to nothing of the prior."""
-        found, _ = self._friction(inputs, tables)
-        return {name: found[name] for name in FIELDS}
+        found, _ = self._friction(*self.skin(inputs), tables)
+        return {name: found[name] for name in self.fields}
 
     def flags(self, inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
         """The flags of `FLAGS`, each ``(B, N)``."""
-        found, products = self._friction(inputs, tables)
+        inputs, tissue = self.skin(inputs)
+        found, products = self._friction(inputs, tissue, tables)
         shape, strain = products.shape, found["strain"]
         return {
             "strained": strain > NOTABLE_STRAIN,
@@ -79,10 +87,12 @@ class TabulatedStribeck:
 
     def abscissa(self, inputs: Inputs, tables: Tables) -> FloatArray:
         """Speed times the viscosity in the film, N/m, ``(B, N)``."""
-        return self._friction(inputs, tables)[1]
+        return self._friction(*self.skin(inputs), tables)[1]
 
-    def _friction(self, inputs: Inputs, tables: Tables) -> tuple[dict[str, FloatArray], FloatArray]:
-        parameters = {name: inputs[name] for name in _HELD if name in inputs}
+    def _friction(
+        self, inputs: Inputs, tissue: RememberingTissue | None, tables: Tables
+    ) -> tuple[dict[str, FloatArray], FloatArray]:
+        parameters = {name: inputs[name] for name in HELD if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
         balls = LubricatedBalls(
@@ -92,6 +102,7 @@ class TabulatedStribeck:
             everything=True,
             thickest_film=limit_of(inputs, "inlet_film_limit"),
             largest_strain=limit_of(inputs, "strain_limit"),
+            tissue=tissue,
         )
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
@@ -103,7 +114,7 @@ class TabulatedStribeck:
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
-        found = {name: np.array(getattr(friction, field)) for name, field in FIELDS.items()}
+        found = {name: np.array(getattr(friction, field)) for name, field in self.fields.items()}
         found |= {"strain": friction.strain, "shear_rate_unmeasured": unmeasured}
         products = np.array(np.broadcast_to(products, unmeasured.shape))
         found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
@@ -114,6 +125,35 @@ class TabulatedStribeck:
 def _liquids(flow_curves: tuple[FlowCurve, ...]) -> LiquidRows:
     """The tabulated flow curves of rows; the same at every evaluation of a likelihood."""
     return liquid_rows(flow_curves)
+
+
+def film_plan(held: Ranges, ranges: Ranges, tables: Tables, theory: Theory) -> FilmTablePlan:
+    """Plan of the table for the ranges of `FILM_PARAMETERS` in ``held`` and whatever else is fixed."""
+    fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
+    spectrum = spectrum_of(fixed, tables)
+    numbers: Any = {
+        name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
+        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+    }
+    return FilmTablePlan(
+        {"rms_height": (float(np.asarray(rms_height(spectrum))),) * 2, **held},
+        spectrum=spectrum,
+        largest_strain=float(fixed["strain_limit"]),
+        contact=theory.contact,
+        **numbers,
+    )
+
+
+def kept_films(plan: FilmTablePlan, progress: Progress | None, cores: int) -> FilmTable:
+    """The table of a plan, from disk if it was built before."""
+    table = kept_table(
+        "stribeck",
+        plan.key(),
+        FilmTable,
+        lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
+    )
+    assert table is not None
+    return table
 
 
 def prepare(
@@ -138,7 +178,7 @@ def prepare(
     varying = [
         name
         for name, (low, high) in ranges.items()
-        if low != high and name in names and name not in (*_HELD, *AFTERWARDS)
+        if low != high and name in names and name not in (*HELD, *AFTERWARDS)
     ]
     if varying:
         return replace(
@@ -146,29 +186,9 @@ def prepare(
             accuracy=f"Each curve is solved by itself, which is slow: a table of films cannot be used while "
             f"{' and '.join(varying)} {'varies' if len(varying) == 1 else 'vary'}.",
         )
-    fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
-    spectrum = spectrum_of(fixed, tables)
-    held = {name: ranges[name] for name in _HELD if name in ranges}
-    held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
-    numbers: Any = {
-        name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
-        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
-    }
-    plan = FilmTablePlan(
-        held,
-        spectrum=spectrum,
-        largest_strain=float(fixed["strain_limit"]),
-        contact=theory.contact,
-        **numbers,
-    )
-
-    table = kept_table(
-        "stribeck",
-        plan.key(),
-        FilmTable,
-        lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
-    )
-    assert table is not None
+    held = {name: ranges[name] for name in HELD if name in ranges}
+    plan = film_plan(held, ranges, tables, theory)
+    table = kept_films(plan, progress, cores)
     tabulated = TabulatedStribeck(table, names)
     middle, far, worst = (100 * float(error) for error in table.held_out)
     return replace(

@@ -18,9 +18,10 @@ from skinbayes.lubrication._uniform_spline import (
     gather_both,
 )
 from skinbayes.lubrication.contact_films import POINT
-from skinbayes.lubrication.film_axes import Scales, film_scales
+from skinbayes.lubrication.film_axes import FilmAxes, Scales, film_scales
 from skinbayes.lubrication.film_point import end_coordinate, log_end
 from skinbayes.lubrication.film_reference import SmoothFilms
+from skinbayes.lubrication.smooth_memory import SmoothWithMemory
 from skinbayes.lubrication.film_table import (
     ANCHORS,
     BOUNDARY,
@@ -28,6 +29,7 @@ from skinbayes.lubrication.film_table import (
     COUETTE,
     FASTEST,
     FRACTION,
+    HYSTERESIS,
     MINIMUM,
     PRESSURE_FLOW,
     REFERENCE,
@@ -35,8 +37,10 @@ from skinbayes.lubrication.film_table import (
     FilmTable,
 )
 
-_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0}
+_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0, HYSTERESIS: 0.0}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
+
+_REFERENCE = REFERENCE | {HYSTERESIS: 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +54,7 @@ class ContractedFilms:
     anchor, unit : ln λ that speeds are counted from and their unit, dimensionless, shape ``(B, 1)`` or ``(B, N)``
     speeds : number of speeds, dimensionless
     smooth : films of the smooth ball
+    log_loss : ln sin δ of tissue that remembers, shape ``(B, 1)`` or ``(B, N)``; None if it is elastic
     end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line
         contact and for points, of which no drag is asked
     scales : of the contact, shape ``(B, 1)`` or ``(B, N)`` each
@@ -61,10 +66,11 @@ class ContractedFilms:
     anchor: FloatArray
     unit: FloatArray
     speeds: int
-    smooth: SmoothFilms
+    smooth: SmoothFilms | SmoothWithMemory
     end: FloatArray | None
     scales: Scales
     inside: BoolArray
+    log_loss: FloatArray | None = None
 
     def points(self, shape: tuple[int, int]) -> ContractedFilms:
         """The same for vectors and rows of the given shape one after the other, as arrays of one axis."""
@@ -78,7 +84,7 @@ class ContractedFilms:
         names = ("start", "anchor", "unit", "inside")
         scales = Scales(*(function(scale) for scale in self.scales))
         return replace(
-            self, scales=scales, end=None, **{name: function(getattr(self, name)) for name in names}
+            self, scales=scales, end=None, log_loss=None, smooth=self.smooth.mapped(function), **{name: function(getattr(self, name)) for name in names}
         )
 
     def log_outputs(self, log_number: FloatArray, outputs: Sequence[int]) -> list[FloatArray]:
@@ -99,7 +105,7 @@ class ContractedFilms:
         start = self.start + cell
         weights, slopes = cubic_weights(place), cubic_slopes(place) if slope else ()
         ends = _Ends(self, position, log_number)
-        references = [REFERENCE[output] for output in outputs if output in REFERENCE]
+        references = [_REFERENCE[output] for output in outputs if output in _REFERENCE]
         smooth = iter(self._smooth(ends.held_number, references, slope))
         found: list[FloatArray] = []
         for output in outputs:
@@ -110,7 +116,7 @@ class ContractedFilms:
                 rate *= per_unit / self.unit
             else:
                 value = gather(self.flat, start, offset, weights)
-            if output in REFERENCE:
+            if output in _REFERENCE:
                 value += next(smooth)
                 if rate is not None:
                     rate += next(smooth)
@@ -157,7 +163,7 @@ class _Ends:
             value[self.slow] += power * self.below + bend * (growth - 1)
             if rate is not None:
                 rate[self.slow] = power + bend * growth
-        if self.fast[0].size and output not in REFERENCE:
+        if self.fast[0].size and output not in _REFERENCE:
             value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
         return [value] if rate is None else [value, rate]
 
@@ -169,12 +175,13 @@ class _Ends:
         )
         unit = np.broadcast_to(films.unit, self.shape)[where]
         rate = (films.flat.take(start + 2) - films.flat.take(start)) / 2 * self.per_unit / unit
-        if output in REFERENCE:
+        if output in _REFERENCE:
             at = np.broadcast_to(films.anchor + films.unit * (SLOWEST if point == 0 else FASTEST), self.shape)
-            reference = REFERENCE[output]
+            reference = _REFERENCE[output]
             end = None if films.end is None else np.broadcast_to(films.end, self.shape)[where]
             wanted = range(reference, reference + 1)
-            rate = rate + films.smooth(at[where], wanted, slope=True, end=end)[1]
+            smooth = films.smooth.mapped(lambda array: np.broadcast_to(array, self.shape)[where])
+            rate = rate + smooth(at[where], wanted, slope=True, end=end)[1]
         return np.asarray(rate)
 
 
@@ -194,9 +201,7 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     axes = table.axes
     inside = axes.contains(log_parameters)
     columns = ANCHORS + outputs * (table.speeds + 2)
-    held = [
-        np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in axes.coordinates(log_parameters)
-    ]  # nan fails the comparison too
+    held = held_coordinates(axes, log_parameters)
     found = summed(table.coefficients[..., :columns], held, len(log_parameters[0]))
     flat = found.reshape(-1)
     start = np.arange(0, flat.size, columns).reshape(found.shape[:2])
@@ -217,3 +222,8 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
         scales,
         inside,
     )
+
+
+def held_coordinates(axes: FilmAxes, log_parameters: Sequence[FloatArray]) -> list[FloatArray]:
+    """Coordinates of parameters, those outside the table as in its middle, which nan is, too."""
+    return [np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in axes.coordinates(log_parameters)]

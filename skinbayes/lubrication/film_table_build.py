@@ -217,12 +217,12 @@ def _correction(
     return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 
-def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
-    """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
+def held_out_places(table: FilmTable, plan: FilmTablePlan, count: int) -> tuple[FloatArray, FloatArray]:
+    """Random parameters that a table holds, ln in SI, shape ``(M, 6)``, and ln λ, shape ``(M,)``."""
     rng = np.random.default_rng(20130)
     axes = table.axes
     points: list[FloatArray] = []
-    while len(points) < plan.checked:
+    while len(points) < count:
         drawn = axes.tied(rng.uniform(axes.low, axes.high))
         strain = film_scales(list(drawn), table.poisson_ratio_bulk).strain
         if strain <= np.log(plan.largest_strain) and axes.contains(list(drawn)):
@@ -232,7 +232,13 @@ def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
     thickest = np.log(THICKEST_FILM) - 2 * scales.strain
     films = contract(table, list(drawn.T[:, :, None]), 1)
     slowest = np.minimum((films.anchor + films.unit * (SLOWEST - 0.2))[:, 0], thickest)
-    number = rng.uniform(slowest, thickest)
+    return drawn, rng.uniform(slowest, thickest)
+
+
+def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
+    """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
+    drawn, number = held_out_places(table, plan, plan.checked)
+    scales = film_scales(list(drawn.T), table.poisson_ratio_bulk)
     balls = [plan.ball(point) for point in drawn]
     # σ_f for which μ of small contacts is about 1 at rest
     shear_stress = np.array(

@@ -137,8 +137,8 @@ def viscoelastic_films(
             flow_factors=flow_factors,
             nodes=nodes,
         )
-        for name, part in solved.items():
-            found[name][rows] = part
+        for name, part in found.items():
+            part[rows] = getattr(solved, name)
     return ViscoelasticFilms(**found)
 
 
@@ -151,8 +151,8 @@ def films_on(
     asperities: AsperityLaw | None,
     flow_factors: FlowFactors | None = None,
     nodes: int,
-) -> dict[str, FloatArray | float]:
-    """Fields of `ViscoelasticFilms` at products ηv, N/m, shape ``(K,)``, of a solid that passes with one memory."""
+) -> ViscoelasticFilms:
+    """Films at products ηv, N/m, shape ``(K,)``, of a solid that passes with one memory; places ``(N,)`` are the same for all."""
     stage = _Stage(scales)
     films = films_of(
         product,
@@ -165,7 +165,8 @@ def films_on(
         nodes=nodes,
         respond=stage.respond,
     )
-    return stage.part(films, scales.modulus * scales.half_width / (2 * cylinder_radius), cylinder_radius)
+    solved = stage.part(films, scales.modulus * scales.half_width / (2 * cylinder_radius), cylinder_radius)
+    return ViscoelasticFilms(**solved)
 
 
 class _Stage:
@@ -184,11 +185,13 @@ class _Stage:
         self._kernel = self._scales.kernel(self._position)
         return LineGrid(self._position, grid.spacing * half, grid.weight * half, self._kernel.deflection)
 
-    def part(self, films: LubricatedFilms, peak: float, radius: float) -> dict[str, FloatArray | float]:
+    def part(self, films: LubricatedFilms, peak: float, radius: float) -> dict[str, FloatArray]:
         """Fields of `ViscoelasticFilms`; ``peak`` is p_H (Pa), ``radius`` Rc (m)."""
         names = {entry.name for entry in fields(ViscoelasticFilms)} & set(LubricatedFilms._fields)
-        part: dict[str, FloatArray | float] = {name: getattr(films, name) for name in names}
-        part |= {"reference_modulus": self._scales.modulus, "half_width": self._scales.half_width}
+        part: dict[str, FloatArray] = {name: getattr(films, name) for name in names}
+        whole = np.full(films.couette.shape, 1.0)
+        part |= {"reference_modulus": self._scales.modulus * whole, "half_width": self._scales.half_width * whole}
+        part["hysteresis"] = np.nan * whole
         if self._kernel is not None:
             pressure = (films.fluid_pressure + films.asperity_pressure) / peak
             drag = hysteresis_integral(self._position, pressure, self._kernel)
