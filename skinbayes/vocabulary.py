@@ -86,6 +86,11 @@ _ALL = (
     Quantity("sphere_radius", "R", "m", "radius of the sphere"),
     _closed("indentation_depth", "δ", "m", "depth to which a ball is pressed into the skin"),
     _closed("indentation_force", "F_δ", "N", "force that presses a ball to the indentation depth"),
+    Quantity("indentation_rate", "dδ/dt", "m/s", "speed at which a ball is pressed in, and drawn back"),
+    _closed(
+        "indentation_loss_fraction", "W_loss/W", "1", "work lost in pressing in and drawing back over that of pressing in",
+        1.0,
+    ),
     Quantity("viscosity", "η", "Pa s", "dynamic viscosity"),
     _closed("shear_rate", "γ̇", "1/s", "shear rate"),
     _closed("speed_viscosity_product", "ηv", "N/m", "viscosity times sliding speed"),

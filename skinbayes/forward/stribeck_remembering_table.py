@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 
+from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Progress, kept_table
 from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
 from skinbayes.forward.stribeck_direct import Theory
@@ -128,10 +129,22 @@ def _at_corners(ranges: Ranges, substrate: str) -> tuple[dict[str, tuple[float, 
         ("young_modulus_layer", tissue.log_modulus_layer),
         ("young_modulus_bulk", tissue.log_modulus_bulk),
     ):
-        low, high = float(found.min()), float(found.max())
-        spare = _SPARE if high - low > _SPARE else 0.0
-        held[name] = (float(np.exp(low - spare)), float(np.exp(high + spare)))
+        held[name] = _stiffened(ranges[name], found - np.log(corners[enter.index(name)]))
     largest = max(float(tissue.strength.max()), _WEAKEST)
     if substrate != STANDARD_LINEAR_SOLID:
         return held, largest, (0.0, 0.0)
     return held, largest, (float(tissue.place.min()) - _SPARE, float(tissue.place.max()) + _SPARE)
+
+
+def _stiffened(given: tuple[float, float], growth: FloatArray) -> tuple[float, float]:
+    """Range of a modulus at v/b, Pa, from its own range and ln of what it is multiplied by there.
+
+    The tail of the prior and the fastest, most relaxing contact hardly meet: both ends reach as far as the root of the sum of the
+    squares of the two. Where one of them does not vary it is their sum.
+    """
+    low, high = np.log(given)
+    least, most = float(growth.min()), float(growth.max())
+    spare = _SPARE if most > least else 0.0
+    middle, shift = (low + high) / 2, (least + most) / 2
+    reach = float(np.hypot((high - low) / 2, (most - least) / 2)) + spare
+    return float(np.exp(middle + shift - reach)), float(np.exp(middle + shift + reach))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray, IndexArray
-from skinbayes.emulation.chebyshev import summed
+from skinbayes.emulation.chebyshev import summed, summed_locally
 from skinbayes.lubrication._uniform_spline import (
     cell_of,
     cubic_slopes,
@@ -185,7 +185,9 @@ class _Ends:
         return np.asarray(rate)
 
 
-def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: int) -> ContractedFilms:
+def contract(
+    table: FilmTable, log_parameters: Sequence[FloatArray], outputs: int, *, local: int | None = None
+) -> ContractedFilms:
     """Sum up the axes of a table for B parameter vectors.
 
     Parameters
@@ -193,6 +195,7 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     table : `FilmTable`
     log_parameters : ln of the parameters, SI, each of shape ``(B, 1)`` or ``(B, N)``
     outputs : how many of the outputs are wanted, from the first on, dimensionless
+    local : terms between the rows of a vector along the first of several axes that they vary along, dimensionless; all if None
 
     Returns
     -------
@@ -202,7 +205,12 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     inside = axes.contains(log_parameters)
     columns = ANCHORS + outputs * (table.speeds + 2)
     held = held_coordinates(axes, log_parameters)
-    found = summed(table.coefficients[..., :columns], held, len(log_parameters[0]))
+    parts, vectors = table.coefficients[..., :columns], len(log_parameters[0])
+    rows = [axis for axis, place in enumerate(held) if place.shape[1] > 1]
+    if local is not None and len(rows) > 1 and parts.shape[rows[0]] > local:
+        found = summed_locally(parts, held, vectors, rows[0], local)
+    else:
+        found = summed(parts, held, vectors)
     flat = found.reshape(-1)
     start = np.arange(0, flat.size, columns).reshape(found.shape[:2])
     scales = film_scales(log_parameters, table.poisson_ratio_bulk)

@@ -112,7 +112,7 @@ def build_film_table(
         if plan.contact == LINE:
             outputs = relative_outputs(outputs, numbers, smooth)
         else:
-            outputs = relative_outputs(whole_drag(outputs, numbers), numbers, _with_whole_drag(smooth))
+            outputs = relative_outputs(whole_drag(outputs, numbers), numbers, with_whole_drag(smooth))
             ends = _ends_of(plan)
             addition, smooth, similar = _correction(plan, solve, point_places, anchor_terms, grid, ends)
             shape = _corrected_at(axes.counts)
@@ -175,7 +175,7 @@ def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
     return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
 
 
-def _with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
+def with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
     """Smooth films of a cylinder with the whole drag of the liquid in place of the pressure flow."""
     log_number = smooth.lowest + smooth.step * np.arange(smooth.coefficients.shape[1] - 2)
     values = np.array(smooth(log_number, range(4)))
@@ -213,7 +213,7 @@ def _correction(
     smooth = smooth_point_films(*ends)
     end = end_coordinate(log_end(film_scales(list(parameters.T), plan.poisson_ratio_bulk).strain), *ends)
     point = relative_outputs(point, few, smooth, end)
-    line = relative_outputs(whole_drag(line, numbers), numbers, _with_whole_drag(smooth_films()))
+    line = relative_outputs(whole_drag(line, numbers), numbers, with_whole_drag(smooth_films()))
     return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 

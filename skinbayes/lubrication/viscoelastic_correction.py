@@ -19,6 +19,7 @@ NARROWEST = 1e-6
 
 _TURN = 3.0  # ln of the Deborah number over which its axis bends towards the elastic limits at both ends
 _SLACK = 1e-9
+_LOCAL = 5  # terms between the moduli that the rows of a vector meet, which differ by little
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -30,8 +31,9 @@ class MemoryCorrection:
     substrate : "standard_linear_solid" or "constant_loss"
     largest_strength : ln(1 + Δ) or n, dimensionless; the axis begins at 0
     first_place, last_place : ends of the axis of the place, see `bent`, dimensionless
-    coefficients : Chebyshev coefficients over strength, place and the axes of the table, shape ``(n1, …, 7 (S + 2))``, of the
-        B-spline coefficients of what is added to the six outputs, over the strength, and of the hysteresis
+    coefficients : Chebyshev coefficients over strength, place and the axes of the table, shape ``(n1, …, 2 + 7 (S + 2))``,
+        of the shift and stretch of speeds and of the B-spline coefficients of what is added to the six outputs, over the
+        strength, and of those of the hysteresis
     smooth : the same of smooth films, shape ``(n1, n2, 5 (S′ + 2))``
     held_out : median, 99th percentile and largest relative error of the friction coefficient at random places,
         dimensionless, shape ``(3,)``
@@ -88,7 +90,7 @@ def contract_remembering(
     table: FilmTable, correction: MemoryCorrection, log_parameters: Sequence[FloatArray], memory: Sequence[FloatArray]
 ) -> ContractedFilms:
     """`contract` with all outputs and the hysteresis, for tissue with strength, place and loss, ``(B, 1)`` or ``(B, N)`` each."""
-    films = contract(table, log_parameters, HYSTERESIS)
+    films = contract(table, log_parameters, HYSTERESIS, local=_LOCAL)
     strength, place, loss = memory
     scaled = correction.coordinates(strength, place)
     inside = films.inside
@@ -100,20 +102,23 @@ def contract_remembering(
     axes = held_coordinates(table.axes, log_parameters)
     added = summed(correction.coefficients, [*held, *axes], vectors)
     smooth = summed(correction.smooth, held, vectors)
-    outputs = HYSTERESIS * (added.shape[-1] // (HYSTERESIS + 1))
-    added[..., :outputs] *= strength[..., None]
+    # all but the hysteresis is counted over the strength
+    of_hysteresis = added.shape[-1] - (added.shape[-1] - ANCHORS) // (HYSTERESIS + 1)
+    added[..., :of_hysteresis] *= strength[..., None]
     smooth[..., : (SMOOTH_OUTPUTS - 1) * (smooth.shape[-1] // SMOOTH_OUTPUTS)] *= strength[..., None]
     known = films.flat.reshape(*films.start.shape, -1)
-    shape = (vectors, max(known.shape[1], added.shape[1]))
-    flat = np.empty((*shape, ANCHORS + added.shape[-1]))
-    flat[..., : ANCHORS + outputs] = known
-    flat[..., ANCHORS : ANCHORS + outputs] += added[..., :outputs]
-    flat[..., ANCHORS + outputs :] = added[..., outputs:]
+    flat = added if added.shape[1] >= known.shape[1] else np.repeat(added, known.shape[1], axis=1)
+    flat[..., ANCHORS:of_hysteresis] += known[..., ANCHORS:]
+    shift, stretch = flat[..., 0], 1 + flat[..., 1]
+    anchor, unit = films.anchor + films.unit * shift, films.unit * stretch
+    start = np.arange(0, flat.size, flat.shape[-1]).reshape(flat.shape[:2])
     assert isinstance(films.smooth, SmoothFilms)
     return replace(
         films,
         flat=flat.reshape(-1),
-        start=np.arange(0, flat.size, flat.shape[-1]).reshape(shape),
+        start=start,
+        anchor=anchor,
+        unit=unit,
         smooth=SmoothWithMemory(
             films.smooth,
             smooth.reshape(-1),

@@ -18,8 +18,9 @@ from skinbayes.lubrication.contact_films import LINE, POINT
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_plan import FilmTablePlan
-from skinbayes.lubrication.film_point import whole_drag
-from skinbayes.lubrication.film_sweeps import Ball
+from skinbayes.lubrication.film_point import relative_outputs, similar_speeds, whole_drag
+from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_sweeps import FAINT, HALF, Ball
 from skinbayes.lubrication.film_table import (
     BOUNDARY,
     COUETTE,
@@ -30,7 +31,7 @@ from skinbayes.lubrication.film_table import (
     SLOWEST,
     FilmTable,
 )
-from skinbayes.lubrication.film_table_build import held_out_places
+from skinbayes.lubrication.film_table_build import held_out_places, with_whole_drag
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
 from skinbayes.lubrication.smooth_memory import LOG_NUMBERS, smooth_outputs
 from skinbayes.lubrication.viscoelastic_correction import (
@@ -47,6 +48,7 @@ VERSION = 1
 """Of what the numbers in a correction mean; those of another version are built anew."""
 
 _EVERY = 2  # of the speeds of the table at which the correction is solved
+_BEYOND = 8  # speeds, beyond those of the table, at which the shifted ones may lie
 _ALONG = 3  # nodes of an axis of the table, at most
 _CHECK_NODES = 128
 _REFERENCE = REFERENCE | {HYSTERESIS: 4}
@@ -132,34 +134,39 @@ def build_memory_correction(
     nodes = [*product(*(zeros(count).tolist() for count in plan.nodes))]
     places = axes.representative(np.array(nodes).reshape(len(nodes), len(axes.names)))
     grid = np.linspace(SLOWEST, FASTEST, plan.films.speeds)
-    few = grid[::_EVERY]
+    fine = SLOWEST + (FASTEST - SLOWEST) / (plan.films.speeds - 1) * np.arange(plan.films.speeds + _BEYOND)
+    few = fine[::_EVERY]
     total = (len(kernels) + 2) * len(places) + len(kernels) + 1 + plan.checked
     with Tasks(processes, total, progress, kept) as solve:
         balls = [plan.films.ball(place) for place in places]
         anchors = _anchors_of(table, places, balls, solve)
-        numbers = anchors[:, :1] + anchors[:, 1:] * few
+        numbers, all_numbers = (anchors[:, :1] + anchors[:, 1:] * places for places in (few, fine))
         of_nodes = partial(_outputs, nodes=plan.films.nodes, substrate=plan.substrate)
-        elastic = solve("elastic", of_nodes, ((*one, None) for one in zip(balls, numbers, strict=True)))
+        elastic = solve("elastic", of_nodes, ((*one, None) for one in zip(balls, all_numbers, strict=True)))
         smooth = solve(
             "smooth", partial(smooth_outputs, substrate=plan.substrate, whole_drag=whole), [(0.0, 0.0), *kernels]
         )
         tasks = ((*one, kernel) for kernel in kernels for one in zip(balls, numbers, strict=True))
         found = solve("memory", of_nodes, tasks).reshape(len(kernels), len(places), HYSTERESIS + 1, few.size)
         if whole:
-            elastic = whole_drag(elastic, numbers)
+            elastic = whole_drag(elastic, all_numbers)
             found = np.stack([whole_drag(one, numbers) for one in found])
-        found[:, :, :HYSTERESIS] -= elastic[:, :HYSTERESIS]
         added = smooth[1:]
         added[:, :-1] -= smooth[0, :-1]
         reference = CubicSpline(LOG_NUMBERS, added, axis=-1)(np.maximum(numbers, LOG_NUMBERS[0]))
+        elastic = elastic[:, :HYSTERESIS]
+        found[:, :, :HYSTERESIS] -= elastic[..., ::_EVERY]
         for output, place in _REFERENCE.items():
             found[:, :, output] -= reference[:, place]
+        found = CubicSpline(few, found, axis=-1)(fine)
+        films = smooth_films()
+        elastic = relative_outputs(elastic, all_numbers, with_whole_drag(films) if whole else films)
+        found[:, :, :HYSTERESIS] += elastic
+        terms = np.stack([_similar(one, elastic, fine, grid) for one in found])
         strength = np.array(kernels)[:, :1, None]
-        found[:, :, :HYSTERESIS] /= strength[..., None]
+        terms[..., : -grid.size - 2] /= strength  # of all but the hysteresis
         added[:, :-1] /= strength
-        splines = spline_coefficients(CubicSpline(few, found, axis=-1)(grid))
-        splines[:, :, [*_REFERENCE], -3:] = 0.0  # as those of the table
-        terms = splines.reshape(*plan.kernels, *plan.nodes, -1)
+        terms = terms.reshape(*plan.kernels, *plan.nodes, -1)
         correction = MemoryCorrection(
             substrate=plan.substrate,
             largest_strength=float(plan.largest_strength),
@@ -171,6 +178,21 @@ def build_memory_correction(
             held_out_count=plan.checked,
         )
         return replace(correction, held_out=_check(correction, table, plan, solve)) if plan.checked else correction
+
+
+def _similar(found: FloatArray, elastic: FloatArray, fine: FloatArray, grid: FloatArray) -> FloatArray:
+    """What is added to the anchors and outputs of M cylinders, shape ``(M, 2 + 7 (S + 2))``, at speeds of equal load fractions.
+
+    Relative outputs are those of tissue that remembers, ``(M, 7, F)``, and of elastic one, ``(M, 6, F)``, at speeds of the latter.
+    """
+    similar = similar_speeds(found, fine, elastic, fine, (HALF, FAINT))
+    residual = np.empty((*found.shape[:2], grid.size))
+    for row, (shift, stretch) in enumerate(similar.tolist()):
+        residual[row] = CubicSpline(fine, found[row], axis=-1)(np.minimum(shift + stretch * grid, fine[-1]))
+    residual[:, :HYSTERESIS] -= elastic[..., : grid.size]
+    splines = spline_coefficients(residual)
+    splines[:, [*_REFERENCE], -3:] = 0.0  # as those of the table
+    return np.concatenate([similar - [0.0, 1.0], splines.reshape(len(found), -1)], axis=1)
 
 
 _Task = tuple[Ball, FloatArray, tuple[float, float] | None]
