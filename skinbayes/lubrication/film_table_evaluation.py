@@ -207,7 +207,9 @@ def _tabulated(
         )
     parameters = [np.asarray(named[name], dtype=np.float64) for name in FILM_PARAMETERS]
     others = floats(speed, balls.frictional_shear_stress, balls.velocity_shift_factor)
-    given = np.broadcast_shapes(*(x.shape for x in (*parameters, *others)))
+    tissue = balls.tissue
+    memory = [] if tissue is None else floats(tissue.strength, tissue.place, tissue.loss)
+    given = np.broadcast_shapes(*(x.shape for x in (*parameters, *others, *memory)))
     if len(given) > 2:
         raise InputError(f"Arguments have the shape {given}, but need at most two axes: vectors and rows.")
     vectors, rows = shape = (1, 1, *given)[-2:]
@@ -221,7 +223,7 @@ def _tabulated(
             for x in parameters
         ]
         whole_rows = [np.broadcast_to(x, shape) for x in others]
-        memory = () if balls.tissue is None else balls.tissue.rows(vectors)
+        memory = [np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)) for x in memory]
         held = table.coefficients.shape[-1] * (max(rows, 1) if any(x.shape[1] > 1 for x in logs) else 1)
         step = max(1, min(_POINTS // max(rows, 1), _COEFFICIENTS // held))
         parts = [

@@ -23,7 +23,7 @@ _STEP, _COUNT = 0.75, 23  # of ln λ, down from the fastest
 LOG_NUMBERS = HIGHEST - _STEP * np.arange(_COUNT)[::-1]
 """ln λ at which smooth films are solved; below, what memory adds to them stays as it is, as the table of rough ones takes it."""
 
-_NODES, _PART = 160, 6
+_NODES, _PART = 128, 6
 
 
 def smooth_outputs(kernel: tuple[float, float], substrate: str, whole_drag: bool) -> FloatArray:

@@ -70,11 +70,6 @@ class RememberingTissue:
     place: ArrayLike
     loss: ArrayLike
 
-    def rows(self, vectors: int) -> list[FloatArray]:
-        """Strength, place and loss of B vectors, shape ``(B, 1)`` or ``(B, N)``."""
-        given = (np.asarray(x, dtype=np.float64) for x in (self.strength, self.place, self.loss))
-        return [np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)) for x in given]
-
 
 def bent(place: FloatArray) -> FloatArray:
     """Axis of a place, −1 … 1: the tissue is elastic at both of its ends."""

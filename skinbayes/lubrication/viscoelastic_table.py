@@ -49,7 +49,7 @@ VERSION = 1
 
 _EVERY = 2  # of the speeds of the table at which the correction is solved
 _BEYOND = 8  # speeds, beyond those of the table, at which the shifted ones may lie
-_ALONG = 3  # nodes of an axis of the table, at most
+_SPARSER = 1 / 3  # nodes at which the correction is solved, over those of the table
 _CHECK_NODES = 128
 _REFERENCE = REFERENCE | {HYSTERESIS: 4}
 
@@ -74,7 +74,7 @@ class MemoryPlan:
     largest_strength: float
     places: tuple[float, float] = (0.0, 0.0)
     counts: tuple[int, int] | None = None
-    checked: int = 200
+    checked: int = 120
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -96,7 +96,7 @@ class MemoryPlan:
     @property
     def nodes(self) -> tuple[int, ...]:
         """Nodes of the axes of the table at which the correction is solved: fewer than those of the table."""
-        return tuple(min(count, _ALONG) for count in self.films.axes.counts)
+        return tuple(max(min(count, 3), round(_SPARSER * count)) for count in self.films.axes.counts)
 
     def key(self) -> dict[str, Any]:
         """Numbers and texts that JSON can hold; equal for equal corrections."""
