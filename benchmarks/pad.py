@@ -6,8 +6,8 @@ Prints ηv at half of the plateau, the minimum, and friction and film far above 
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -85,7 +85,10 @@ def main() -> None:
             for length in (0.5, 1.0):
                 found, plain = curve(force, area, length), reference if length == 1.0 else None
                 plain = plain or reference
-                print(f"flatter pressure, inlet {length:g} a   " + "  ".join(f"{n} {found[n] / plain[n]:.3f}" for n in found))
+                print(
+                    f"flatter pressure, inlet {length:g} a   "
+                    + "  ".join(f"{n} {found[n] / plain[n]:.3f}" for n in found)
+                )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Contact mechanics of skin and other solids: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
+from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
 from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area, total_contact_area
 from skinbayes.contact.elliptic_contact import (
@@ -13,6 +14,7 @@ from skinbayes.contact.elliptic_contact import (
 from skinbayes.contact.gaps import GapDistribution, gap_distribution
 from skinbayes.contact.hertz import HertzSphere, sphere_contact, sphere_force, sphere_of_contact
 from skinbayes.contact.homogeneous import HomogeneousSolid
+from skinbayes.contact.indentation_loss import loss_fraction_of_constant_loss, loss_fraction_of_relaxation
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.layers import layered_modulus
 from skinbayes.contact.line_contact import (
@@ -38,6 +40,7 @@ from skinbayes.contact.viscoelastic_indentation import (
     IndentationCycle,
     indentation_creep,
     indentation_cycle,
+    indentation_force_at_rate,
     indentation_relaxation,
 )
 from skinbayes.contact.viscoelastic_line_contact import ViscoelasticLine, viscoelastic_line_contact
@@ -50,6 +53,7 @@ from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 
 __all__ = [
     "AREA_CORRECTION",
+    "ConstantLossMaterial",
     "ContactArea",
     "Creep",
     "ElasticSolid",
@@ -78,9 +82,12 @@ __all__ = [
     "gap_distribution",
     "indentation_creep",
     "indentation_cycle",
+    "indentation_force_at_rate",
     "indentation_relaxation",
     "layered_modulus",
     "line_contact",
+    "loss_fraction_of_constant_loss",
+    "loss_fraction_of_relaxation",
     "material_of_dynamic_moduli",
     "mean_separation",
     "persson_contact_area",

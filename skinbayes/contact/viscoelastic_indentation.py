@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import dawsn
+from scipy.special import betainc, dawsn, gamma
 
 from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.solid import plane_strain
 from skinbayes.contact.viscoelastic import ViscoelasticMaterial
 from skinbayes.errors import InputError
 
+_HALVINGS = 54  # of a bracket: down to rounding
 _POINTS = 400  # of each half of a cycle
 _SMALL = 1e-2  # t/τ below which a power series takes the place of Dawson's integral
 
@@ -40,7 +42,11 @@ class IndentationCycle:
 
 
 def indentation_cycle(
-    rate: float, depth: float, *, sphere_radius: float, material: ViscoelasticMaterial
+    rate: float,
+    depth: float,
+    *,
+    sphere_radius: float,
+    material: ViscoelasticMaterial | ConstantLossMaterial,
 ) -> IndentationCycle:
     """Press a rigid ball into a viscoelastic half-space and draw it back (the experiment quoted in Sect. 6.2 of the paper).
 
@@ -89,23 +95,19 @@ def indentation_cycle(
     ):
         if not 0 < value < np.inf:
             raise InputError(f"{name} is {value:g} {unit}, but must be a finite number > 0 {unit}.")
-    if not np.isfinite(material.instantaneous_modulus):
+    if not np.isfinite(abs(material.complex_modulus(rate / depth))):
         raise InputError("The material of an indentation is impossible; validate_solid says why.")
     turn = depth / rate
 
-    def impulse(time: float) -> float:
-        """∫E dt from 0."""
-        return float(_impulse(material, np.asarray(time)))
+    def balance(earlier: FloatArray, time: FloatArray) -> FloatArray:
+        return np.asarray(_impulse(material, time - earlier) - 2 * _impulse(material, time - turn))
 
-    def balance(earlier: float, time: float) -> float:
-        return impulse(time - earlier) - 2 * impulse(time - turn)
-
-    end = float(brentq(lambda time: -balance(0.0, time), turn, 2 * turn, xtol=1e-14 * turn))
+    end = _halved(lambda time: balance(np.zeros(1), time), np.array([turn]), np.array([2 * turn])).item()
     # the contact shrinks ever faster: points by the fall of its depth
     back = turn + (end - turn) * np.sin(np.linspace(0, np.pi / 2, _POINTS + 1))[1:]
-    grown = [
-        float(brentq(balance, 0.0, turn, args=(time,), xtol=1e-15 * turn)) for time in back[:-1].tolist()
-    ]
+    grown = _halved(
+        lambda earlier: balance(earlier, back[:-1]), np.zeros(_POINTS - 1), np.full(_POINTS - 1, turn)
+    )
     loading = turn * np.linspace(0, 1, _POINTS + 1)
     time = np.concatenate([loading, back])
     until = np.concatenate([loading, grown, [0.0]])
@@ -195,16 +197,81 @@ def indentation_relaxation(
         return np.asarray(4 / 3 * modulus * np.sqrt(radius) * pressed**1.5)[()]
 
 
-def _impulse(material: ViscoelasticMaterial, time: FloatArray) -> FloatArray:
+def indentation_force_at_rate(
+    rate: ArrayLike,
+    depth: ArrayLike,
+    *,
+    sphere_radius: ArrayLike,
+    material: ViscoelasticMaterial | ConstantLossMaterial,
+) -> FloatArray:
+    """Force on a ball that is pressed in at a constant rate when it has come to a depth, ``F = (4√R/3) ∫ E*(t − s) d(δ^(3/2))``.
+
+    Parameters
+    ----------
+    rate : dδ/dt, m/s, > 0, shape ``(K,)`` or a scalar
+    depth : δ, m, > 0, broadcasts with ``rate``
+    sphere_radius : R, m, > 0, broadcasts with ``rate``
+    material : of the half-space, one material, moduli in Pa
+
+    Returns
+    -------
+    force : F, N, broadcast shape; nan where an argument is impossible
+
+    References
+    ----------
+    Lee & Radok, J. Appl. Mech. 27 (1960) 438.
+
+    Examples
+    --------
+    >>> from skinbayes.contact import standard_linear_solid
+    >>> tissue = standard_linear_solid(20e3, 28e3, relaxation_time=0.1)
+    >>> print(indentation_force_at_rate([1e-5, 1e-3, 1.0], 1e-3, sphere_radius=8e-3, material=tissue).round(4))
+    [0.1007 0.1058 0.1405]
+    """
+    speed, pressed, radius = (np.asarray(x, dtype=np.float64) for x in (rate, depth, sphere_radius))
+    shape = np.broadcast_shapes(speed.shape, pressed.shape, radius.shape)
+    with np.errstate(all="ignore"):
+        time = np.broadcast_to(pressed / speed, shape).reshape(-1)
+        time = np.where((time > 0) & (time < np.inf), time, np.nan)
+        loaded = _loaded(material, time, time).reshape(shape)
+        stiffness = np.where(radius > 0, 4 / 3 * np.sqrt(radius), np.nan) * plane_strain(
+            1.0, material.poisson_ratio
+        )
+        return np.asarray(stiffness * speed**1.5 * loaded)[()]
+
+
+def _halved(function: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+    """Zeros of a falling function between low and high, to rounding."""
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        above = function(middle) > 0
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return (low + high) / 2
+
+
+def _impulse(material: ViscoelasticMaterial | ConstantLossMaterial, time: FloatArray) -> FloatArray:
     """∫E dt from 0, Pa s."""
+    if isinstance(material, ConstantLossMaterial):
+        power, reference = float(material.power), float(material.reference_frequency)
+        return np.asarray(
+            float(material.modulus) * reference**-power * time ** (1 - power) / gamma(2 - power)
+        )
     times = np.asarray(material.relaxation_times)
     moduli = np.asarray(material.relaxing_moduli)
     relaxed = (moduli * times * -np.expm1(-time[..., None] / times)).sum(axis=-1)
     return np.asarray(material.equilibrium_modulus * time + relaxed)
 
 
-def _loaded(material: ViscoelasticMaterial, until: FloatArray, time: FloatArray) -> FloatArray:
+def _loaded(
+    material: ViscoelasticMaterial | ConstantLossMaterial, until: FloatArray, time: FloatArray
+) -> FloatArray:
     """``∫₀^until E(time − s) (3/2) √s ds``, Pa s^(3/2)."""
+    if isinstance(material, ConstantLossMaterial):
+        # E(t) = |E| (ω_r t)^−n/Γ(1 − n)
+        power, reference = float(material.power), float(material.reference_frequency)
+        share = betainc(1.5, 1 - power, until / np.where(time > 0, time, 1.0))
+        whole = 1.5 * gamma(1.5) / gamma(2.5 - power) * time ** (1.5 - power)
+        return np.asarray(float(material.modulus) * reference**-power * whole * share)
     times, moduli = np.asarray(material.relaxation_times), np.asarray(material.relaxing_moduli)
     x = until[:, None] / times
     root = np.sqrt(x)

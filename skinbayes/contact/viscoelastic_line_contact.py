@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.line_contact import line_contact
-from skinbayes.contact.moving_kernel import MovingKernel, moving_kernel
+from skinbayes.contact.moving_kernel import MovingKernel, moving_kernel, power_law_kernel
 from skinbayes.contact.viscoelastic import ViscoelasticMaterial
 from skinbayes.errors import InputError
 
@@ -67,16 +69,40 @@ class Passage(NamedTuple):
         )
 
 
+class PowerLawPassage(NamedTuple):
+    """A material of constant loss angle that passes a line contact.
+
+    Attributes
+    ----------
+    modulus : |E*| at v/b, Pa
+    half_width : b of the line contact of that modulus, m
+    power : n of ``E ∝ (iω)^n``, dimensionless
+    """
+
+    modulus: float
+    half_width: float
+    power: float
+
+    def kernel(self, position: FloatArray) -> MovingKernel:
+        """Kernel at nodes X = x/b, dimensionless."""
+        return power_law_kernel(position, self.power)
+
+
+AnyMaterial = ViscoelasticMaterial | ConstantLossMaterial
+AnyPassage = Passage | PowerLawPassage
+
+
 def passage(
-    material: ViscoelasticMaterial, speed: float, *, load_per_length: float, cylinder_radius: float
-) -> Passage:
+    material: AnyMaterial, speed: float, *, load_per_length: float, cylinder_radius: float
+) -> AnyPassage:
     """Scales of a contact at v, m/s, under f_N, N/m, with Rc, m; modulus and half-width belong to each other."""
-    modulus = float(material.reduced_modulus(0.0).real)
-    for _ in range(60):
-        half_width = float(line_contact(load_per_length, cylinder_radius, reduced_modulus=modulus).half_width)
-        last, modulus = modulus, float(abs(material.reduced_modulus(speed / half_width)))
-        if not abs(modulus / last - 1) > 1e-12:
-            break
+
+    def half_width_of(modulus: float) -> float:
+        return float(line_contact(load_per_length, cylinder_radius, reduced_modulus=modulus).half_width)
+
+    modulus, half_width = modulus_in_contact(material, speed, half_width_of)
+    if isinstance(material, ConstantLossMaterial):
+        return PowerLawPassage(modulus, half_width, float(material.power))
     creep = material.creep
     scale = modulus * (1 - float(material.poisson_ratio) ** 2)
     return Passage(
@@ -88,12 +114,29 @@ def passage(
     )
 
 
+def modulus_in_contact(
+    material: AnyMaterial, speed: float, half_width_of: Callable[[float], float]
+) -> tuple[float, float]:
+    """|E*| at v/b, Pa, at v, m/s, and b, m, which depends on it; nan if it has no such modulus."""
+    fractional = isinstance(material, ConstantLossMaterial)
+    if fractional and not speed > 0 and float(material.power) > 0:
+        return np.nan, np.nan  # given time enough, it gives way without end
+    start = float(material.reference_frequency) if fractional else 0.0
+    modulus = float(abs(material.reduced_modulus(start)))
+    for _ in range(60):
+        half_width = half_width_of(modulus)
+        last, modulus = modulus, float(abs(material.reduced_modulus(speed / half_width)))
+        if not abs(modulus / last - 1) > 1e-12:
+            break
+    return modulus, half_width
+
+
 def viscoelastic_line_contact(
     speed: ArrayLike,
     *,
     load_per_length: float,
     cylinder_radius: float,
-    material: ViscoelasticMaterial,
+    material: AnyMaterial,
     nodes: int = NODES,
 ) -> ViscoelasticLine:
     """Smooth contact of a rigid cylinder that slides over a viscoelastic half-space (line contact of Hertz at v = 0).
@@ -144,7 +187,7 @@ def viscoelastic_line_contact(
 
 
 def _one(
-    speed: float, load: float, radius: float, material: ViscoelasticMaterial, nodes: int
+    speed: float, load: float, radius: float, material: AnyMaterial, nodes: int
 ) -> tuple[FloatArray | float, ...]:
     missing = np.full(nodes, np.nan)
     scales = passage(material, speed, load_per_length=load, cylinder_radius=radius)
@@ -171,7 +214,7 @@ def _one(
     )
 
 
-def edges(scales: Passage) -> tuple[float, float]:
+def edges(scales: AnyPassage) -> tuple[float, float]:
     """X at which smooth dry contact begins and ends, dimensionless, to about 0.02; −1 and 1 where the solid is elastic."""
     found = _zeros(_PLACES, _pressure(_PLACES, scales.kernel(_PLACES)))
     elastic = _elastic_edges()

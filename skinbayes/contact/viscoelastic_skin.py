@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, ComplexArray
+from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.layered import LayeredSkin, contrast, inverse_response_of
 from skinbayes.contact.viscoelastic import ViscoelasticMaterial
 from skinbayes.roughness._fields import Floats, with_axes
@@ -38,8 +39,8 @@ class ViscoelasticSkin:
     28000.0
     """
 
-    layer: ViscoelasticMaterial
-    bulk: ViscoelasticMaterial
+    layer: ViscoelasticMaterial | ConstantLossMaterial
+    bulk: ViscoelasticMaterial | ConstantLossMaterial
     layer_thickness: Floats
 
     def complex_effective_modulus(

@@ -10,6 +10,8 @@ from numpy.polynomial.chebyshev import chebder, chebval, chebvander
 
 from skinbayes.arrays import FloatArray
 
+_NARROW = 1e-9  # half a range of rows that are all alike
+
 
 def lobatto(count: int) -> FloatArray:
     """Nodes on [0, 1], ascending, ends included, shape ``(count,)``."""
@@ -127,3 +129,35 @@ def summed(parts: FloatArray, places: Sequence[FloatArray], vectors: int) -> Flo
             # contiguous also in a batch of one, whose strides say so anyway: the same product for both
             parts = np.matmul(np.ascontiguousarray(weights), block)
     return np.asarray(parts)
+
+
+def summed_locally(
+    parts: FloatArray, places: Sequence[FloatArray], vectors: int, axis: int, count: int
+) -> FloatArray:
+    """`summed`, where the rows of a vector lie close to each other along one axis.
+
+    Between the outermost rows of each vector the series along ``axis`` is replaced by one of ``count`` terms through as many nodes:
+    rows then have fewer terms. The other arguments and the values are those of `summed`; rows must vary along ``axis``.
+    """
+    *counts, columns = parts.shape
+    place = places[axis]
+    low, high = place.min(axis=1, keepdims=True), place.max(axis=1, keepdims=True)
+    half = np.maximum((high - low) / 2, _NARROW)
+    middle = (low + high) / 2
+    common = [a for a, other in enumerate(places) if other.shape[1] == 1]
+    rows = [a for a, other in enumerate(places) if other.shape[1] != 1 and a != axis]
+    weights = _to_coefficients(count, False) @ polynomials(middle + half * zeros(count), counts[axis])
+    for other in common:
+        weights = (weights[..., None] * polynomials(places[other], counts[other])[:, :, None, :]).reshape(
+            vectors, count, -1
+        )
+    block = np.ascontiguousarray(np.transpose(parts, (axis, *common, *rows, len(counts))))
+    block = np.matmul(np.ascontiguousarray(weights), block.reshape(weights.shape[-1], -1))
+    weights = polynomials((place - middle) / half, count)
+    for other in rows:
+        weights = (weights[..., None] * polynomials(places[other], counts[other])[..., None, :]).reshape(
+            vectors, place.shape[1], -1
+        )
+    return np.asarray(
+        np.matmul(np.ascontiguousarray(weights), block.reshape(vectors, weights.shape[-1], columns))
+    )

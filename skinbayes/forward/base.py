@@ -96,6 +96,7 @@ class ForwardModel:
     optional : inputs with default values, SI
     goes_with : optional or accepted input to the input without which it has no meaning: refused if that is not given, and no
         default then
+    why_needed : required input to the reason why it is, a clause that is said where it is missing
     exclusive : further sets of alternatives of which at most one may be given, such as wavevector or magnification
     derived_names : names of the ``derived`` quantities
     blocks : those of them that may stand for the parameters behind them when combinations are named (``rms_slope``)
@@ -143,6 +144,7 @@ class ForwardModel:
     optional: Mapping[str, float] = field(default_factory=dict)
     derived: Callable[[Inputs, Tables], dict[str, FloatArray]] = nothing_derived
     goes_with: Mapping[str, str] = field(default_factory=dict)
+    why_needed: Mapping[str, str] = field(default_factory=dict)
     exclusive: tuple[tuple[tuple[str, ...], ...], ...] = ()
     derived_names: tuple[str, ...] = ()
     blocks: tuple[str, ...] = ()

@@ -27,7 +27,9 @@ from skinbayes.forward.stribeck_direct import (
     speed_viscosity_product_of,
 )
 from skinbayes.forward.stribeck_table import prepare
+from skinbayes.forward.stribeck_viscoelastic import on_viscoelastic_skin
 from skinbayes.lubrication import CONTACTS, LARGEST_STRAIN, POINT, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
+from skinbayes.lubrication.viscoelastic_memory import ELASTIC, SUBSTRATES
 from skinbayes.roughness import rms_slope
 
 FLOW_FACTORS = ("none", "patir-cheng", "gap")
@@ -82,15 +84,22 @@ def _profile(inputs: Inputs, tables: Tables, products: FloatArray, theory: Theor
     return friction + np.asarray(inputs.get("additive_friction", 0.0))[..., np.newaxis]
 
 
-def stribeck_model(contact: str = POINT, flow_factors: str = "none") -> ForwardModel:
+def stribeck_model(
+    contact: str = POINT, flow_factors: str = "none", substrate: str = ELASTIC
+) -> ForwardModel:
     """Return the forward model of the ball, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
-    theory = Theory(contact, flow_factors)
-    pad = contact == PAD
+    theory = Theory(contact, flow_factors, substrate)
+    elastic = _elastic(theory)
+    return elastic if substrate == ELASTIC else on_viscoelastic_skin(elastic, theory)
+
+
+def _elastic(theory: Theory) -> ForwardModel:
+    pad = theory.contact == PAD
     return ForwardModel(
         name="stribeck",
         summary="friction of a ball on lubricated rough skin, its boundary, Couette and pressure-flow parts, and the films",
         observables=tuple(FIELDS),
-        options={"contact": (*CONTACTS, PAD), "flow_factors": FLOW_FACTORS},
+        options={"contact": (*CONTACTS, PAD), "flow_factors": FLOW_FACTORS, "substrate": SUBSTRATES},
         variant=stribeck_model,
         chosen=theory._asdict(),
         required=(

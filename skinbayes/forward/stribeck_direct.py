@@ -24,8 +24,8 @@ from skinbayes.lubrication import (
     StribeckCurve,
     stribeck_curve,
     stribeck_curve_of_liquid,
-    tabulated_flow_factors,
 )
+from skinbayes.lubrication.viscoelastic_memory import ELASTIC
 from skinbayes.roughness import rms_height
 
 NOTABLE_FILM = THICKEST_FILM / 5
@@ -57,7 +57,8 @@ FLAGS = {
 SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
 """How the abscissa can be given; the first complete alternative is used."""
 
-_CURVE = "flow_curve"  # number of the flow curve of a row, among the inputs
+CURVE = "flow_curve"
+"""Number of the flow curve of a row, among the inputs."""
 
 
 def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
@@ -68,10 +69,11 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
 
 
 class Theory(NamedTuple):
-    """What is chosen beside the inputs: the contact, "point", "line" or "pad", and where flow factors come from."""
+    """What is chosen beside the inputs: the contact, "point", "line" or "pad", where flow factors come from, and the substrate."""
 
     contact: str = POINT
     flow_factors: str = "none"
+    substrate: str = ELASTIC
 
 
 BALL = Theory()
@@ -95,7 +97,7 @@ def _ball(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, Any]:
     return {name: inputs[name] for name in names} | {
         "contact": POINT if theory.contact == PAD else theory.contact,
         "inlet_length": limit_of(inputs, "inlet_length") if theory.contact == PAD else None,
-        "flow_factors": _flow_factors(inputs, tables, theory.flow_factors),
+        "flow_factors": flow_factors_of(inputs, tables, theory.flow_factors),
         "skin": skin_of(inputs),
         "spectrum": spectrum_of(inputs, tables),
         "thickest_film": np.inf if theory.contact == PAD else limit_of(inputs, "inlet_film_limit"),
@@ -103,7 +105,7 @@ def _ball(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, Any]:
     }
 
 
-def _flow_factors(inputs: Inputs, tables: Tables, kind: str) -> FlowFactors | None:
+def flow_factors_of(inputs: Inputs, tables: Tables, kind: str) -> FlowFactors | None:
     """Flow factors of one surface and skin, from the statistics of its gaps or the fits of Patir and Cheng."""
     if kind == "none":
         return None
@@ -152,7 +154,7 @@ def solve(
         known.pop("speed_viscosity_product", None)
         curves = list({id(curve): curve for curve in tables.flow_curves}.values())
         place = {id(curve): float(i) for i, curve in enumerate(curves)}
-        known[_CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
+        known[CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
         known["sliding_speed"] = inputs["sliding_speed"]
         distinct = Tables(tables.spectrum, tuple(curves))
         found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct, theory=theory))
@@ -194,7 +196,7 @@ def _of_liquids(inputs: Inputs, speeds: FloatArray, tables: Tables, theory: Theo
     batch = max(len(speeds), *(np.shape(value)[0] for value in inputs.values()))
     rows = []
     for b, one in enumerate(one_by_one(inputs, batch)):
-        liquid = tables.flow_curves[int(one[_CURVE])]
+        liquid = tables.flow_curves[int(one[CURVE])]
         curve, _ = stribeck_curve_of_liquid(
             speeds[b if len(speeds) > 1 else 0], liquid, **_ball(one, tables, theory)
         )

@@ -38,6 +38,7 @@ from skinbayes.lubrication import (
     tabulated_friction,
     tabulated_friction_of_liquids,
 )
+from skinbayes.lubrication.viscoelastic_correction import RememberingTissue
 from skinbayes.roughness import rms_height
 
 AFTERWARDS = (
@@ -46,8 +47,11 @@ AFTERWARDS = (
 )  # fmt: skip
 """Inputs that enter exactly, whatever the table."""
 
-_AREA = ("nominal_contact_area", *AREA_DEFAULTS)
-_HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])  # axes of the table, if they vary
+AREA = ("nominal_contact_area", *AREA_DEFAULTS)
+"""Inputs that say how wide a pad touches."""
+
+HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])
+"""Inputs that are axes of the table, if they vary."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,15 +68,21 @@ class TabulatedStribeck:
     table: FilmTable
     names: tuple[str, ...]
     pad: bool = False
+    fields = FIELDS  # observables and the fields of the friction they are
+
+    def skin(self, inputs: Inputs) -> tuple[Inputs, RememberingTissue | None]:
+        """Inputs with the moduli that the contact meets, and the memory of the tissue; None if it is elastic."""
+        return inputs, None
 
     def evaluate(self, inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
         """Observables ``(B, N)``; nan for what the table does not hold, which is next to nothing of the prior."""
-        found, _ = self._friction(inputs, tables)
-        return {name: found[name] for name in FIELDS}
+        found, _ = self._friction(*self.skin(inputs), tables)
+        return {name: found[name] for name in self.fields}
 
     def flags(self, inputs: Inputs, tables: Tables) -> dict[str, BoolArray]:
         """The flags of `FLAGS`, each ``(B, N)``."""
-        found, products = self._friction(inputs, tables)
+        inputs, tissue = self.skin(inputs)
+        found, products = self._friction(inputs, tissue, tables)
         shape, strain = products.shape, found["strain"]
         return {
             "strained": strain > NOTABLE_STRAIN,
@@ -84,12 +94,14 @@ class TabulatedStribeck:
 
     def abscissa(self, inputs: Inputs, tables: Tables) -> FloatArray:
         """Speed times the viscosity in the film, N/m, ``(B, N)``."""
-        return self._friction(inputs, tables)[1]
+        return self._friction(*self.skin(inputs), tables)[1]
 
-    def _friction(self, inputs: Inputs, tables: Tables) -> tuple[dict[str, FloatArray], FloatArray]:
+    def _friction(
+        self, inputs: Inputs, tissue: RememberingTissue | None, tables: Tables
+    ) -> tuple[dict[str, FloatArray], FloatArray]:
         if self.pad:
             inputs = with_ball(inputs)
-        parameters = {name: inputs[name] for name in _HELD if name in inputs}
+        parameters = {name: inputs[name] for name in HELD if name in inputs}
         if "rms_height" not in parameters and tables.spectrum is not None:
             parameters["rms_height"] = np.asarray(rms_height(tables.spectrum))
         balls = LubricatedBalls(
@@ -99,6 +111,7 @@ class TabulatedStribeck:
             everything=True,
             thickest_film=np.inf if self.pad else limit_of(inputs, "inlet_film_limit"),
             largest_strain=limit_of(inputs, "strain_limit"),
+            tissue=tissue,
         )
         if tables.flow_curves is None:
             products = speed_viscosity_product_of(inputs)
@@ -110,7 +123,7 @@ class TabulatedStribeck:
             )
             products = inputs["sliding_speed"] * liquid.viscosity
             unmeasured = liquid.unmeasured.astype(float)
-        found = {name: np.array(getattr(friction, field)) for name, field in FIELDS.items()}
+        found = {name: np.array(getattr(friction, field)) for name, field in self.fields.items()}
         found |= {"strain": friction.strain, "shear_rate_unmeasured": unmeasured}
         products = np.array(np.broadcast_to(products, unmeasured.shape))
         found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
@@ -121,6 +134,40 @@ class TabulatedStribeck:
 def _liquids(flow_curves: tuple[FlowCurve, ...]) -> LiquidRows:
     """The tabulated flow curves of rows; the same at every evaluation of a likelihood."""
     return liquid_rows(flow_curves)
+
+
+def film_plan(held: Ranges, ranges: Ranges, tables: Tables, theory: Theory) -> FilmTablePlan:
+    """Plan of the table for the ranges of `FILM_PARAMETERS` in ``held`` and whatever else is fixed."""
+    fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
+    spectrum = spectrum_of(fixed, tables)
+    numbers: Any = {
+        name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
+        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
+    }
+    held = {"rms_height": (float(np.asarray(rms_height(spectrum))),) * 2, **held}
+    of_contact: Any = {"contact": theory.contact}
+    if theory.contact == PAD:
+        held = film_ranges(held, numbers["poisson_ratio_bulk"])
+        of_contact = {
+            "contact": POINT,
+            "counts": film_counts(held),
+            "inlet_length": float(fixed["inlet_length"]),
+        }
+    return FilmTablePlan(
+        held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), **of_contact, **numbers
+    )
+
+
+def kept_films(plan: FilmTablePlan, progress: Progress | None, cores: int) -> FilmTable:
+    """The table of a plan, from disk if it was built before."""
+    table = kept_table(
+        "stribeck",
+        plan.key(),
+        FilmTable,
+        lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
+    )
+    assert table is not None
+    return table
 
 
 def prepare(
@@ -146,7 +193,7 @@ def prepare(
     varying = [
         name
         for name, (low, high) in ranges.items()
-        if low != high and name in names and name not in (*_HELD, *AFTERWARDS, *_AREA)
+        if low != high and name in names and name not in (*HELD, *AFTERWARDS, *AREA)
     ]
     if varying:
         return replace(
@@ -154,35 +201,10 @@ def prepare(
             accuracy=f"Each curve is solved by itself, which is slow: a table of films cannot be used while "
             f"{' and '.join(varying)} {'varies' if len(varying) == 1 else 'vary'}.",
         )
-    fixed = {name: np.array(low) for name, (low, _) in ranges.items()}
-    spectrum = spectrum_of(fixed, tables)
-    held = {name: ranges[name] for name in (*_HELD, *_AREA) if name in ranges}
-    held.setdefault("rms_height", (float(np.asarray(rms_height(spectrum))),) * 2)
-    numbers: Any = {
-        name: float(fixed["poisson_ratio" if "young_modulus" in fixed and name in GOES_WITH else name])
-        for name in ("poisson_ratio_layer", "poisson_ratio_bulk", "area_correction")
-    }
-    pad = theory.contact == PAD
-    if pad:
-        held = film_ranges(held, numbers["poisson_ratio_bulk"])
-    plan = FilmTablePlan(
-        held,
-        spectrum=spectrum,
-        largest_strain=float(fixed["strain_limit"]),
-        contact=POINT if pad else theory.contact,
-        counts=film_counts(held) if pad else None,
-        inlet_length=float(fixed["inlet_length"]) if pad else None,
-        **numbers,
-    )
-
-    table = kept_table(
-        "stribeck",
-        plan.key(),
-        FilmTable,
-        lambda unfinished: build_film_table(plan, processes=cores, progress=progress, kept=unfinished),
-    )
-    assert table is not None
-    tabulated = TabulatedStribeck(table, names, pad)
+    held = {name: ranges[name] for name in (*HELD, *AREA) if name in ranges}
+    plan = film_plan(held, ranges, tables, theory)
+    table = kept_films(plan, progress, cores)
+    tabulated = TabulatedStribeck(table, names, theory.contact == PAD)
     middle, far, worst = (100 * float(error) for error in table.held_out)
     return replace(
         model,

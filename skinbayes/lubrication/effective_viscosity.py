@@ -144,7 +144,7 @@ def stribeck_curve_of_liquid(
         with np.errstate(divide="ignore"):
             return np.asarray(np.log(speed / films.central_film))
 
-    log_viscosity = _fixed_point(shear_rate, liquids)
+    log_viscosity = agreeing_viscosity(shear_rate, liquids)
     rate = np.exp(shear_rate(log_viscosity))
     curve = stribeck_curve(
         np.exp(log_viscosity) * speed,
@@ -170,7 +170,7 @@ def stribeck_curve_of_liquid(
     return replace(curve, shear_rate_unmeasured=unmeasured), found
 
 
-def _fixed_point(shear_rate: Callable[[FloatArray], FloatArray], liquids: LiquidRows) -> FloatArray:
+def agreeing_viscosity(shear_rate: Callable[[FloatArray], FloatArray], liquids: LiquidRows) -> FloatArray:
     """ln η that agrees with its own ln shear rate, by false position (Illinois) from the extremes of each liquid."""
 
     def miss_at(place: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray, IndexArray
-from skinbayes.emulation.chebyshev import summed
+from skinbayes.emulation.chebyshev import summed, summed_locally
 from skinbayes.lubrication._uniform_spline import (
     cell_of,
     cubic_slopes,
@@ -18,7 +18,7 @@ from skinbayes.lubrication._uniform_spline import (
     gather_both,
 )
 from skinbayes.lubrication.contact_films import POINT
-from skinbayes.lubrication.film_axes import Scales, film_scales
+from skinbayes.lubrication.film_axes import FilmAxes, Scales, film_scales
 from skinbayes.lubrication.film_point import end_coordinate, log_end
 from skinbayes.lubrication.film_reference import SmoothFilms
 from skinbayes.lubrication.film_table import (
@@ -28,15 +28,27 @@ from skinbayes.lubrication.film_table import (
     COUETTE,
     FASTEST,
     FRACTION,
+    HYSTERESIS,
     MINIMUM,
     PRESSURE_FLOW,
     REFERENCE,
     SLOWEST,
     FilmTable,
 )
+from skinbayes.lubrication.smooth_memory import SmoothWithMemory
 
-_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0}
+_POWER = {
+    CENTRAL: 0.0,
+    BOUNDARY: 0.0,
+    COUETTE: 0.0,
+    PRESSURE_FLOW: 1.0,
+    MINIMUM: 0.0,
+    FRACTION: 0.0,
+    HYSTERESIS: 0.0,
+}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
+
+_REFERENCE = REFERENCE | {HYSTERESIS: 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +62,7 @@ class ContractedFilms:
     anchor, unit : ln λ that speeds are counted from and their unit, dimensionless, shape ``(B, 1)`` or ``(B, N)``
     speeds : number of speeds, dimensionless
     smooth : films of the smooth ball
+    log_loss : ln sin δ of tissue that remembers, shape ``(B, 1)`` or ``(B, N)``; None if it is elastic
     end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line
         contact, and for points, of which no drag is asked, unless it changes their films
     scales : of the contact, shape ``(B, 1)`` or ``(B, N)`` each
@@ -61,10 +74,11 @@ class ContractedFilms:
     anchor: FloatArray
     unit: FloatArray
     speeds: int
-    smooth: SmoothFilms
+    smooth: SmoothFilms | SmoothWithMemory
     end: FloatArray | None
     scales: Scales
     inside: BoolArray
+    log_loss: FloatArray | None = None
 
     def points(self, shape: tuple[int, int]) -> ContractedFilms:
         """The same for vectors and rows of the given shape one after the other, as arrays of one axis."""
@@ -79,7 +93,12 @@ class ContractedFilms:
         scales = Scales(*(function(scale) for scale in self.scales))
         end = function(self.end) if self.smooth.everywhere else None
         return replace(
-            self, scales=scales, end=end, **{name: function(getattr(self, name)) for name in names}
+            self,
+            scales=scales,
+            end=end,
+            log_loss=None,
+            smooth=self.smooth.mapped(function),
+            **{name: function(getattr(self, name)) for name in names},
         )
 
     def log_outputs(self, log_number: FloatArray, outputs: Sequence[int]) -> list[FloatArray]:
@@ -100,7 +119,7 @@ class ContractedFilms:
         start = self.start + cell
         weights, slopes = cubic_weights(place), cubic_slopes(place) if slope else ()
         ends = _Ends(self, position, log_number)
-        references = [REFERENCE[output] for output in outputs if output in REFERENCE]
+        references = [_REFERENCE[output] for output in outputs if output in _REFERENCE]
         smooth = iter(self._smooth(ends.held_number, references, slope))
         found: list[FloatArray] = []
         for output in outputs:
@@ -111,7 +130,7 @@ class ContractedFilms:
                 rate *= per_unit / self.unit
             else:
                 value = gather(self.flat, start, offset, weights)
-            if output in REFERENCE:
+            if output in _REFERENCE:
                 value += next(smooth)
                 if rate is not None:
                     rate += next(smooth)
@@ -158,7 +177,7 @@ class _Ends:
             value[self.slow] += power * self.below + bend * (growth - 1)
             if rate is not None:
                 rate[self.slow] = power + bend * growth
-        if self.fast[0].size and output not in REFERENCE:
+        if self.fast[0].size and output not in _REFERENCE:
             value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
         return [value] if rate is None else [value, rate]
 
@@ -170,16 +189,19 @@ class _Ends:
         )
         unit = np.broadcast_to(films.unit, self.shape)[where]
         rate = (films.flat.take(start + 2) - films.flat.take(start)) / 2 * self.per_unit / unit
-        if output in REFERENCE:
+        if output in _REFERENCE:
             at = np.broadcast_to(films.anchor + films.unit * (SLOWEST if point == 0 else FASTEST), self.shape)
-            reference = REFERENCE[output]
+            reference = _REFERENCE[output]
             end = None if films.end is None else np.broadcast_to(films.end, self.shape)[where]
             wanted = range(reference, reference + 1)
-            rate = rate + films.smooth(at[where], wanted, slope=True, end=end)[1]
+            smooth = films.smooth.mapped(lambda array: np.broadcast_to(array, self.shape)[where])
+            rate = rate + smooth(at[where], wanted, slope=True, end=end)[1]
         return np.asarray(rate)
 
 
-def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: int) -> ContractedFilms:
+def contract(
+    table: FilmTable, log_parameters: Sequence[FloatArray], outputs: int, *, local: int | None = None
+) -> ContractedFilms:
     """Sum up the axes of a table for B parameter vectors.
 
     Parameters
@@ -187,6 +209,7 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     table : `FilmTable`
     log_parameters : ln of the parameters, SI, each of shape ``(B, 1)`` or ``(B, N)``
     outputs : how many of the outputs are wanted, from the first on, dimensionless
+    local : terms between the rows of a vector along the first of several axes that they vary along, dimensionless; all if None
 
     Returns
     -------
@@ -195,10 +218,13 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
     axes = table.axes
     inside = axes.contains(log_parameters)
     columns = ANCHORS + outputs * (table.speeds + 2)
-    held = [
-        np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in axes.coordinates(log_parameters)
-    ]  # nan fails the comparison too
-    found = summed(table.coefficients[..., :columns], held, len(log_parameters[0]))
+    held = held_coordinates(axes, log_parameters)
+    parts, vectors = table.coefficients[..., :columns], len(log_parameters[0])
+    rows = [axis for axis, place in enumerate(held) if place.shape[1] > 1]
+    if local is not None and len(rows) > 1 and parts.shape[rows[0]] > local:
+        found = summed_locally(parts, held, vectors, rows[0], local)
+    else:
+        found = summed(parts, held, vectors)
     flat = found.reshape(-1)
     start = np.arange(0, flat.size, columns).reshape(found.shape[:2])
     scales = film_scales(log_parameters, table.poisson_ratio_bulk)
@@ -219,3 +245,8 @@ def contract(table: FilmTable, log_parameters: Sequence[FloatArray], outputs: in
         scales,
         inside,
     )
+
+
+def held_coordinates(axes: FilmAxes, log_parameters: Sequence[FloatArray]) -> list[FloatArray]:
+    """Coordinates of parameters, those outside the table as in its middle, which nan is, too."""
+    return [np.where(np.abs(part) <= 1 + 1e-6, part, 0.0) for part in axes.coordinates(log_parameters)]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -97,6 +99,10 @@ class SmoothFilms:
         # d/du of level + u (linear + u (square + u cube)), with inner = u square + u² cube
         cube *= place
         return value, (linear + 2 * inner + cube) / self.step
+
+    def mapped(self, function: Callable[[Any], Any]) -> SmoothFilms:
+        """The same for other rows: it does not depend on them."""
+        return self
 
     @property
     def terms(self) -> int:

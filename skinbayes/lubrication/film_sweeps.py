@@ -9,13 +9,17 @@ from scipy.interpolate import PchipInterpolator
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.area import relative_contact_area
-from skinbayes.contact.line_contact import line_contact
+from skinbayes.contact.line_contact import HertzLine, line_contact
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.contact_films import LINE, contact_films, weighted
-from skinbayes.lubrication.film import lubrication_number_per_product
+from skinbayes.lubrication.film import LubricatedFilms, lubrication_number_per_product
 from skinbayes.lubrication.film_table import FRACTION
-from skinbayes.lubrication.point_film import CELLS
+from skinbayes.lubrication.point_film import CELLS, LubricatedPointFilms
+from skinbayes.lubrication.viscoelastic_film import ViscoelasticFilms, films_on
+from skinbayes.lubrication.viscoelastic_memory import passage_in_contact
+
+AnyFilms = LubricatedFilms | LubricatedPointFilms | ViscoelasticFilms
 
 HALF, FAINT = 0.5, 1e-3
 """Load fractions of the asperities at the two lubrication numbers that a table counts speeds from."""
@@ -70,10 +74,7 @@ class Ball:
             if no film was found
         """
         hertz = line_contact(self.load_per_length, self.cylinder_radius, reduced_modulus=self.reduced_modulus)
-        height = float(hertz.half_width**2 / self.cylinder_radius)
-        slope = float(hertz.half_width / self.cylinder_radius)
-        number = np.exp(log_number)
-        products = number / lubrication_number_per_product(self.cylinder_radius, hertz)
+        products = np.exp(log_number) / lubrication_number_per_product(self.cylinder_radius, hertz)
         for more in _MORE_NODES:
             films, load = contact_films(
                 products,
@@ -86,27 +87,64 @@ class Ball:
                 cells=cells + 4 * more,
                 inlet_length=self.inlet_length,
             )
-            area = relative_contact_area(
-                films.asperity_pressure, self.twice_variance, area_correction=self.area_correction
-            )
-            # 1 − (1 − fraction) has no digits where the fraction is small
-            carried = weighted(films.asperity_pressure, films.load_weight) / load
-            fraction = np.where(films.asperity_load_fraction > 0.5, films.asperity_load_fraction, carried)
-            found = np.array(
-                [
-                    films.central_film / height,
-                    np.maximum(self.stiffness * weighted(area, films.load_weight) / load, _LEAST),
-                    films.couette * 3 * np.pi / slope / number,
-                    (films.pressure_flow if contact == LINE else films.pressure_flow + films.couette)
-                    * np.pi
-                    / slope,
-                    films.minimum_film / height,
-                    np.maximum(fraction, _LEAST),
-                ]
-            )
+            found = self._outputs_of(films, load, log_number, hertz, contact == LINE)
             if np.all(found > 0):
                 return np.log(found)
-        raise InputError(
+        raise self._no_film()
+
+    def outputs_with_memory(
+        self, log_number: FloatArray, nodes: int, *, substrate: str, strength: float, place: float
+    ) -> FloatArray:
+        """The outputs of a cylinder on tissue of the same |E*| at v/b that remembers, and ln of its hysteresis, ``(7, K)``.
+
+        The hysteresis is that over ``(8/3π) sin δ b/Rc``. See `passage_in_contact` for the tissue; `InputError` as `outputs`.
+        """
+        hertz = line_contact(self.load_per_length, self.cylinder_radius, reduced_modulus=self.reduced_modulus)
+        products = np.exp(log_number) / lubrication_number_per_product(self.cylinder_radius, hertz)
+        half_width = float(hertz.half_width)
+        scales, loss = passage_in_contact(
+            substrate, strength, place, modulus=self.reduced_modulus, half_width=half_width
+        )
+        weak = 8 / (3 * np.pi) * loss * half_width / self.cylinder_radius
+        for more in _MORE_NODES:
+            films = films_on(
+                scales,
+                products,
+                load_per_length=self.load_per_length,
+                cylinder_radius=self.cylinder_radius,
+                asperities=self.law,
+                nodes=nodes + more,
+            )
+            found = self._outputs_of(films, self.load_per_length, log_number, hertz, line=True)
+            found = np.concatenate([found, films.hysteresis[None] / weak])
+            if np.all(found > 0):
+                return np.log(found)
+        raise self._no_film()
+
+    def _outputs_of(
+        self, films: AnyFilms, load: float, log_number: FloatArray, hertz: HertzLine, line: bool
+    ) -> FloatArray:
+        height = float(hertz.half_width**2 / self.cylinder_radius)
+        slope = float(hertz.half_width / self.cylinder_radius)
+        area = relative_contact_area(
+            films.asperity_pressure, self.twice_variance, area_correction=self.area_correction
+        )
+        # 1 − (1 − fraction) has no digits where the fraction is small
+        carried = weighted(films.asperity_pressure, films.load_weight) / load
+        fraction = np.where(films.asperity_load_fraction > 0.5, films.asperity_load_fraction, carried)
+        return np.array(
+            [
+                films.central_film / height,
+                np.maximum(self.stiffness * weighted(area, films.load_weight) / load, _LEAST),
+                films.couette * 3 * np.pi / slope / np.exp(log_number),
+                (films.pressure_flow if line else films.pressure_flow + films.couette) * np.pi / slope,
+                films.minimum_film / height,
+                np.maximum(fraction, _LEAST),
+            ]
+        )
+
+    def _no_film(self) -> InputError:
+        return InputError(
             f"No film was found for a cylinder of radius {self.cylinder_radius:.3g} m under {self.load_per_length:.3g} N/m "
             f"on tissue of E* = {self.reduced_modulus:.3g} Pa with E0 h_rms = {self.stiffness:.3g} Pa m, which the table "
             "of films needs; narrower ranges may do without."

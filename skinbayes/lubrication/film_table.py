@@ -20,6 +20,9 @@ CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)
 For a point contact they are those of a cylinder of the same friction and films, and the fourth is the whole drag of the liquid,
 ``∫H dP_f + (λ/3)∫θ dX/H``: the pressure flow up to the edge of a ball may be of either sign."""
 
+HYSTERESIS = 6
+"""One more output where the tissue remembers: ln of the hysteresis over (8/3π) sin δ b/Rc."""
+
 REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
 """Outputs that are relative to those of the smooth ball, and their places among those."""
 

@@ -181,7 +181,7 @@ def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
     return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
 
 
-def _with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
+def with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
     """Smooth films of a cylinder with the whole drag of the liquid in place of the pressure flow."""
     log_number = smooth.lowest + smooth.step * np.arange(smooth.coefficients.shape[1] - 2)
     terms = smooth.terms
@@ -197,11 +197,9 @@ def _with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
 def _smooth_cylinders(plan: FilmTablePlan, ends: tuple[float, float]) -> SmoothFilms:
     """Smooth films of the cylinders whose liquid ends where that of the balls does."""
     if plan.inlet_length is None:
-        return _with_whole_drag(smooth_films())
+        return with_whole_drag(smooth_films())
     places = ends[0] + (ends[1] - ends[0]) * (zeros(TERMS) + 1) / 2
-    return _with_whole_drag(
-        smooth_films_with_end(1 + np.expm1(places) * np.exp(log_radius_over_half_width()))
-    )
+    return with_whole_drag(smooth_films_with_end(1 + np.expm1(places) * np.exp(log_radius_over_half_width())))
 
 
 def _end_coordinates(
@@ -246,12 +244,12 @@ def _correction(
     return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 
-def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
-    """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
+def held_out_places(table: FilmTable, plan: FilmTablePlan, count: int) -> tuple[FloatArray, FloatArray]:
+    """Random parameters that a table holds, ln in SI, shape ``(M, 6)``, and ln λ, shape ``(M,)``."""
     rng = np.random.default_rng(20130)
     axes = table.axes
     points: list[FloatArray] = []
-    while len(points) < plan.checked:
+    while len(points) < count:
         drawn = axes.tied(rng.uniform(axes.low, axes.high))
         strain = film_scales(list(drawn), table.poisson_ratio_bulk).strain
         if strain <= np.log(plan.largest_strain) and axes.contains(list(drawn)):
@@ -261,7 +259,13 @@ def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
     thickest = np.log(THICKEST_FILM) - 2 * scales.strain
     films = contract(table, list(drawn.T[:, :, None]), 1)
     slowest = np.minimum((films.anchor + films.unit * (SLOWEST - 0.2))[:, 0], thickest)
-    number = rng.uniform(slowest, thickest)
+    return drawn, rng.uniform(slowest, thickest)
+
+
+def _check(table: FilmTable, plan: FilmTablePlan, solve: Tasks) -> FloatArray:
+    """Median, 99th percentile and largest error of μ at random parameters and speeds, for a slow μ of 1."""
+    drawn, number = held_out_places(table, plan, plan.checked)
+    scales = film_scales(list(drawn.T), table.poisson_ratio_bulk)
     balls = [plan.ball(point) for point in drawn]
     # σ_f for which μ of small contacts is about 1 at rest
     shear_stress = np.array(

@@ -18,6 +18,7 @@ from skinbayes.lubrication.film_table import (
     CENTRAL,
     COUETTE,
     FRACTION,
+    HYSTERESIS,
     MINIMUM,
     PRESSURE_FLOW,
     FilmTable,
@@ -25,6 +26,8 @@ from skinbayes.lubrication.film_table import (
 from skinbayes.lubrication.film_viscosity import viscosity_of_films
 from skinbayes.lubrication.flow_curves import LiquidRows
 from skinbayes.lubrication.stribeck import LARGEST_STRAIN, THICKEST_FILM
+from skinbayes.lubrication.viscoelastic_correction import RememberingTissue, contract_remembering
+from skinbayes.lubrication.viscoelastic_stribeck import SPHERE_OVER_CYLINDER
 
 _POINTS = 8192  # of vectors times rows worked on at a time: arrays stay in the cache
 _COEFFICIENTS = (
@@ -42,10 +45,11 @@ class TabulatedFriction(NamedTuple):
 
     Attributes
     ----------
-    friction_coefficient : μ, sum of the three parts, dimensionless
+    friction_coefficient : μ, sum of its parts, dimensionless
     boundary : shear stress of the areas of real contact, dimensionless
     couette : shear flow of the liquid, dimensionless
     pressure_flow : pressure flow of the liquid, dimensionless
+    hysteresis : loss of the tissue, dimensionless; 0 if it is elastic
     asperity_load_fraction : fraction of the load that asperities carry, dimensionless; nan if not asked for
     minimum_film : smallest mean separation, m; nan if not asked for
     central_film : mean separation under the middle of the ball, m; nan if not asked for
@@ -59,6 +63,7 @@ class TabulatedFriction(NamedTuple):
     boundary: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
+    hysteresis: FloatArray
     asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
@@ -81,6 +86,7 @@ class LubricatedBalls:
         of the speed without it
     everything : also give films and load fraction
     thickest_film, largest_strain : 3π ηv/f_N and b/Rc, dimensionless, beyond which nothing is predicted
+    tissue : memory of tissue that is not elastic; ``parameters`` are then moduli |E| at v/b
     """
 
     parameters: Mapping[str, ArrayLike]
@@ -89,6 +95,7 @@ class LubricatedBalls:
     everything: bool = False
     thickest_film: float = THICKEST_FILM
     largest_strain: float = LARGEST_STRAIN
+    tissue: RememberingTissue | None = None
 
 
 def tabulated_friction(
@@ -200,7 +207,9 @@ def _tabulated(
         )
     parameters = [np.asarray(named[name], dtype=np.float64) for name in FILM_PARAMETERS]
     others = floats(speed, balls.frictional_shear_stress, balls.velocity_shift_factor)
-    given = np.broadcast_shapes(*(x.shape for x in (*parameters, *others)))
+    tissue = balls.tissue
+    memory = [] if tissue is None else floats(tissue.strength, tissue.place, tissue.loss)
+    given = np.broadcast_shapes(*(x.shape for x in (*parameters, *others, *memory)))
     if len(given) > 2:
         raise InputError(f"Arguments have the shape {given}, but need at most two axes: vectors and rows.")
     vectors, rows = shape = (1, 1, *given)[-2:]
@@ -214,6 +223,7 @@ def _tabulated(
             for x in parameters
         ]
         whole_rows = [np.broadcast_to(x, shape) for x in others]
+        memory = [np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)) for x in memory]
         held = table.coefficients.shape[-1] * (max(rows, 1) if any(x.shape[1] > 1 for x in logs) else 1)
         step = max(1, min(_POINTS // max(rows, 1), _COEFFICIENTS // held))
         parts = [
@@ -223,6 +233,7 @@ def _tabulated(
                 [np.ascontiguousarray(x[first : first + step]) for x in whole_rows],
                 balls,
                 liquids,
+                [x[first : first + step] for x in memory],
             )
             for first in range(0, max(vectors, 1), step)
         ]
@@ -236,9 +247,13 @@ def _part(
     others: list[FloatArray],
     balls: LubricatedBalls,
     liquids: LiquidRows | None,
+    memory: list[FloatArray],
 ) -> tuple[FloatArray | BoolArray, ...]:
     speed, stress, shift = others
-    films = contract(table, logs, 6 if balls.everything else 4)
+    if balls.tissue is None:
+        films = contract(table, logs, 6 if balls.everything else 4)
+    else:
+        films = contract_remembering(table, balls.tissue.correction, logs, memory)
     log_speed = np.maximum(np.log(speed), _STILL)
     log_shift = np.where(shift > 0, np.log(shift), np.nan)
     if liquids is None:
@@ -267,6 +282,8 @@ def _friction(
     good = held & ~strained & ~beyond & np.isfinite(log_number) & (shear_stress >= 0)
     log_number = np.where(good, log_number, films.anchor)
     wanted = _EVERYTHING if balls.everything else _FRICTION
+    if films.log_loss is not None:
+        wanted = (*wanted, HYSTERESIS)
     logs = dict(zip(wanted, films.log_outputs(log_number, wanted), strict=True))
     missing = np.where(good, 0.0, np.nan)
     boundary = shear_stress * np.exp(logs[BOUNDARY] - log_stiffness) + missing
@@ -275,11 +292,17 @@ def _friction(
     if films.end is not None:  # it is the whole drag of the liquid
         pressure = pressure - couette
     nothing = np.broadcast_to(np.nan, good.shape)
+    total, hysteresis = boundary + couette + pressure, missing
+    if films.log_loss is not None:
+        weak = np.exp(logs[HYSTERESIS] + scales.strain + films.log_loss) * (8 / (3 * np.pi))
+        hysteresis = SPHERE_OVER_CYLINDER * weak + missing
+        total = total + hysteresis
     return TabulatedFriction(
-        boundary + couette + pressure,
+        total,
         boundary,
         couette,
         pressure,
+        hysteresis,
         np.minimum(np.exp(logs[FRACTION]), 1.0) + missing if balls.everything else nothing,
         np.exp(logs[MINIMUM] + scales.height) + missing if balls.everything else nothing,
         np.exp(logs[CENTRAL] + scales.height) + missing if balls.everything else nothing,

@@ -8,8 +8,13 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.moving_kernel import MovingKernel
-from skinbayes.contact.viscoelastic import ViscoelasticMaterial
-from skinbayes.contact.viscoelastic_line_contact import Passage, edges, hysteresis_integral, passage
+from skinbayes.contact.viscoelastic_line_contact import (
+    AnyMaterial,
+    AnyPassage,
+    edges,
+    hysteresis_integral,
+    passage,
+)
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.film import NODES, LubricatedFilms, films_of
@@ -60,7 +65,7 @@ def viscoelastic_films(
     *,
     load_per_length: float,
     cylinder_radius: float,
-    material: ViscoelasticMaterial,
+    material: AnyMaterial,
     asperities: AsperityLaw | None = None,
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
@@ -123,30 +128,51 @@ def viscoelastic_films(
         scales = passage(material, value, load_per_length=load_per_length, cylinder_radius=cylinder_radius)
         if not (scales.half_width > 0 and scales.half_width < np.inf):
             continue
-        stage = _Stage(scales)
-        films = films_of(
+        solved = films_on(
+            scales,
             value * viscosities[rows],
             load_per_length=load_per_length,
             cylinder_radius=cylinder_radius,
-            reduced_modulus=scales.modulus,
             asperities=asperities,
             flow_factors=flow_factors,
-            rheology=None,
             nodes=nodes,
-            respond=stage.respond,
         )
-        solved = stage.part(
-            films, scales.modulus * scales.half_width / (2 * cylinder_radius), cylinder_radius
-        )
-        for name, part in solved.items():
-            found[name][rows] = part
+        for name, part in found.items():
+            part[rows] = getattr(solved, name)
     return ViscoelasticFilms(**found)
+
+
+def films_on(
+    scales: AnyPassage,
+    product: FloatArray,
+    *,
+    load_per_length: float,
+    cylinder_radius: float,
+    asperities: AsperityLaw | None,
+    flow_factors: FlowFactors | None = None,
+    nodes: int,
+) -> ViscoelasticFilms:
+    """Films at products ηv, N/m, shape ``(K,)``, of a solid that passes with one memory; places ``(N,)`` are the same for all."""
+    stage = _Stage(scales)
+    films = films_of(
+        product,
+        load_per_length=load_per_length,
+        cylinder_radius=cylinder_radius,
+        reduced_modulus=scales.modulus,
+        asperities=asperities,
+        flow_factors=flow_factors,
+        rheology=None,
+        nodes=nodes,
+        respond=stage.respond,
+    )
+    solved = stage.part(films, scales.modulus * scales.half_width / (2 * cylinder_radius), cylinder_radius)
+    return ViscoelasticFilms(**solved)
 
 
 class _Stage:
     """One speed: puts its kernel into a grid and measures the hysteresis of what was solved on it."""
 
-    def __init__(self, scales: Passage) -> None:
+    def __init__(self, scales: AnyPassage) -> None:
         self._scales = scales
         self._kernel: MovingKernel | None = None
         self._position = np.zeros(0)
@@ -159,11 +185,16 @@ class _Stage:
         self._kernel = self._scales.kernel(self._position)
         return LineGrid(self._position, grid.spacing * half, grid.weight * half, self._kernel.deflection)
 
-    def part(self, films: LubricatedFilms, peak: float, radius: float) -> dict[str, FloatArray | float]:
+    def part(self, films: LubricatedFilms, peak: float, radius: float) -> dict[str, FloatArray]:
         """Fields of `ViscoelasticFilms`; ``peak`` is p_H (Pa), ``radius`` Rc (m)."""
         names = {entry.name for entry in fields(ViscoelasticFilms)} & set(LubricatedFilms._fields)
-        part: dict[str, FloatArray | float] = {name: getattr(films, name) for name in names}
-        part |= {"reference_modulus": self._scales.modulus, "half_width": self._scales.half_width}
+        part: dict[str, FloatArray] = {name: getattr(films, name) for name in names}
+        whole = np.full(films.couette.shape, 1.0)
+        part |= {
+            "reference_modulus": self._scales.modulus * whole,
+            "half_width": self._scales.half_width * whole,
+        }
+        part["hysteresis"] = np.nan * whole
         if self._kernel is not None:
             pressure = (films.fluid_pressure + films.asperity_pressure) / peak
             drag = hysteresis_integral(self._position, pressure, self._kernel)

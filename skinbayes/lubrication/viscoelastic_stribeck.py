@@ -9,8 +9,10 @@ import numpy as np
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.area import relative_contact_area
 from skinbayes.contact.correction import AREA_CORRECTION
+from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.line_contact import EquivalentCylinder, cylinder_of_sphere, line_contact
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.contact.viscoelastic_line_contact import modulus_in_contact
 from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
 from skinbayes.lubrication.film import NODES
@@ -55,6 +57,7 @@ def viscoelastic_stribeck_curve(
     skin: ViscoelasticSkin,
     frictional_shear_stress: float,
     area_correction: float = AREA_CORRECTION,
+    velocity_shift_factor: float = 1.0,
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
     thickest_film: float = THICKEST_FILM,
@@ -77,6 +80,7 @@ def viscoelastic_stribeck_curve(
     skin : one skin, moduli in Pa, thickness in m
     frictional_shear_stress : σ_f, Pa, ≥ 0
     area_correction : γ, dimensionless, 0 < γ ≤ 1; 1 is plain Persson theory
+    velocity_shift_factor : a, dimensionless, > 0; the films are those at a ηv, the tissue that at v
     flow_factors : of the flow between rough surfaces; None for trivial ones
     nodes : number of places across the contact, dimensionless
     thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
@@ -123,6 +127,8 @@ def viscoelastic_stribeck_curve(
     }  # fmt: skip
     beyond, wide, impossible = no.copy(), no.copy(), np.ones_like(no)
     physical = normal_force > 0 and sphere_radius > 0 and frictional_shear_stress >= 0
+    physical = physical and velocity_shift_factor > 0
+    shifted = viscosities * velocity_shift_factor
     known = (speeds >= 0) & (speeds < np.inf) & (viscosities >= 0) & (viscosities < np.inf)
     for value in np.unique(speeds[known]).tolist() if physical else ():
         rows = known & (speeds == value)
@@ -133,14 +139,14 @@ def viscoelastic_stribeck_curve(
         if not (np.isfinite(strain) and is_lawful(*table)):
             continue
         impossible[rows] = False
-        beyond |= rows & (3 * np.pi * speeds * viscosities > thickest_film * cylinder.load_per_length)
+        beyond |= rows & (3 * np.pi * speeds * shifted > thickest_film * cylinder.load_per_length)
         wide[rows] = strain > largest_strain
         solved = rows & ~beyond & ~wide
         if not solved.any():
             continue
         films = viscoelastic_films(
             speeds[solved],
-            viscosities[solved],
+            shifted[solved],
             load_per_length=float(cylinder.load_per_length),
             cylinder_radius=float(cylinder.cylinder_radius),
             material=skin.bulk,
@@ -174,15 +180,24 @@ def viscoelastic_stribeck_curve(
     return ViscoelasticStribeckCurve(**{name: part.reshape(shape)[()] for name, part in result.items()})
 
 
+def skin_at_speed(
+    speed: float, *, normal_force: float, sphere_radius: float, skin: ViscoelasticSkin
+) -> LayeredSkin:
+    """Elastic skin of the moduli that a ball meets at v, m/s; moduli in Pa."""
+    return skin.at_frequency(_contact(speed, normal_force, sphere_radius, skin)[2])
+
+
 def _contact(
     speed: float, force: float, radius: float, skin: ViscoelasticSkin
 ) -> tuple[EquivalentCylinder, float, float]:
     """Cylinder of Eq. 9, its b/Rc and v/b (1/s), with the modulus of the tissue at that frequency."""
-    modulus = float(skin.bulk.reduced_modulus(0.0).real)
-    for _ in range(60):
-        cylinder = cylinder_of_sphere(force, radius, reduced_modulus=modulus)
-        half_width = float(line_contact(*cylinder, reduced_modulus=modulus).half_width)
-        last, modulus = modulus, float(abs(skin.bulk.reduced_modulus(speed / half_width)))
-        if not abs(modulus / last - 1) > 1e-12:
-            break
+
+    def cylinder_on(modulus: float) -> EquivalentCylinder:
+        return cylinder_of_sphere(force, radius, reduced_modulus=modulus)
+
+    def half_width_of(modulus: float) -> float:
+        return float(line_contact(*cylinder_on(modulus), reduced_modulus=modulus).half_width)
+
+    modulus, half_width = modulus_in_contact(skin.bulk, speed, half_width_of)
+    cylinder = cylinder_on(modulus)
     return cylinder, half_width / float(cylinder.cylinder_radius), speed / half_width

@@ -53,8 +53,9 @@ def check_required(
     for entry in forward.required:
         if isinstance(entry, str):
             if entry not in given:
+                why = f" ({forward.why_needed[entry]})" if entry in forward.why_needed else ""
                 raise InputError(
-                    f"{spec.path}: '{forward.name}' needs {entry}: give it in [parameters] or as a column of the data."
+                    f"{spec.path}: '{forward.name}' needs {entry}{why}: give it in [parameters] or as a column of the data."
                     f"{near_miss(columns, [entry])}".rstrip(".")
                 )
         elif not any(set(names) <= given for names in entry):

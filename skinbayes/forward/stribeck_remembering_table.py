@@ -1,0 +1,154 @@
+"""Stribeck curves on skin that is not elastic from a table of films and a correction of it, both kept on disk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from skinbayes.arrays import FloatArray
+from skinbayes.emulation import Progress, kept_table
+from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
+from skinbayes.forward.stribeck_direct import Theory
+from skinbayes.forward.stribeck_remembering import FIELDS, at_frequency, tissue_of, with_profile
+from skinbayes.forward.stribeck_table import (
+    AFTERWARDS,
+    HELD,
+    TabulatedStribeck,
+    film_plan,
+    kept_films,
+)
+from skinbayes.lubrication.contact_films import POINT
+from skinbayes.lubrication.viscoelastic_correction import MemoryCorrection, RememberingTissue
+from skinbayes.lubrication.viscoelastic_memory import RELAXATION_PARAMETERS, STANDARD_LINEAR_SOLID
+from skinbayes.lubrication.viscoelastic_table import MemoryPlan, build_memory_correction
+
+_WEAKEST = 1e-3  # strength up to which a correction reaches at least
+_SPARE = 1e-6  # of ln, beyond the corners of the ranges
+_FIRST = 1e-9  # Δ in place of none, where a Deborah number is looked for
+
+
+@dataclass(frozen=True, eq=False)
+class RememberingStribeck(TabulatedStribeck):
+    """`TabulatedStribeck` with the correction for tissue that is not elastic.
+
+    Attributes
+    ----------
+    correction : what memory adds to the table
+    """
+
+    correction: MemoryCorrection
+    fields = FIELDS
+
+    def skin(self, inputs: Inputs) -> tuple[Inputs, RememberingTissue | None]:
+        """Inputs with moduli at v/b, and the memory of the tissue."""
+        tissue = tissue_of(inputs, self.correction.substrate)
+        memory = {name: getattr(tissue, name) for name in ("strength", "place", "loss")}
+        return at_frequency(inputs, tissue), RememberingTissue(correction=self.correction, **memory)
+
+
+def prepare(
+    model: ForwardModel,
+    ranges: Ranges,
+    tables: Tables,
+    progress: Progress | None,
+    cores: int,
+    theory: Theory,
+) -> ForwardModel:
+    """The forward model with a table of films for the moduli at v/b and its correction, from disk if they were built before.
+
+    Inputs of the films, of the material and those of `AFTERWARDS` may vary; where anything else does, each row is solved.
+    """
+    names = model.input_names()
+    relaxing = RELAXATION_PARAMETERS[theory.substrate]
+    slow = "Each row is solved by itself, which is slow: "
+    if theory.flow_factors != "none":
+        return replace(model, accuracy=f"{slow}tables of films hold no flow factors.")
+    if not ranges["sliding_speed"][0] > 0:
+        return replace(model, accuracy=f"{slow}there are rows that do not slide.")
+    if varying := [
+        name
+        for name, (low, high) in ranges.items()
+        if low != high and name in names and name not in (*HELD, *AFTERWARDS, *relaxing)
+    ]:
+        return replace(
+            model,
+            accuracy=f"{slow}a table of films cannot be used while {' and '.join(varying)} "
+            f"{'varies' if len(varying) == 1 else 'vary'}.",
+        )
+    held, strength, places = _at_corners(ranges, theory.substrate)
+    films = film_plan(held, ranges, tables, theory)
+    table = kept_films(films, progress, cores)
+    plan = MemoryPlan(films, substrate=theory.substrate, largest_strength=strength, places=places)
+    correction = kept_table(
+        "stribeck-memory",
+        plan.key(),
+        MemoryCorrection,
+        lambda unfinished: build_memory_correction(
+            plan, table, processes=cores, progress=progress, kept=unfinished
+        ),
+    )
+    assert correction is not None
+    tabulated = RememberingStribeck(table, names, correction)
+    middle, far, worst = (100 * float(error) for error in correction.held_out)
+    of_ball = (
+        " What memory adds to friction under the ball is taken from its cylinder, an approximation that these numbers do not "
+        f"hold; the table of elastic films of the ball is within {100 * float(table.held_out[1]):.2g} % at the 99th percentile."
+    )
+    fast = replace(
+        model,
+        evaluate=tabulated.evaluate,
+        flags=tabulated.flags,
+        abscissa=tabulated.abscissa,
+        accuracy=f"Friction is read from a table of films of a {theory.contact} contact at the moduli of the frequency v/b, with a "
+        f"correction for the memory of the tissue; at {correction.held_out_count} places that they were not made from it differs "
+        f"from the film solver of a cylinder by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and {worst:.2g} % "
+        "at worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as impossible."
+        + (of_ball if theory.contact == POINT else ""),
+    )
+    return with_profile(fast)
+
+
+def _at_corners(
+    ranges: Ranges, substrate: str
+) -> tuple[dict[str, tuple[float, float]], float, tuple[float, float]]:
+    """Ranges of the parameters of the films with moduli at v/b, the largest strength, and the range of the place.
+
+    Moduli at v/b, strength and Deborah number are monotonic in each input, so that they are largest and smallest at corners.
+    """
+    enter = (
+        "sliding_speed", "normal_force", "sphere_radius", "young_modulus_layer", "young_modulus_bulk",
+        *RELAXATION_PARAMETERS[substrate],
+    )  # fmt: skip
+    ends = dict(ranges)
+    if substrate == STANDARD_LINEAR_SOLID:
+        low, high = ends["relaxation_strength_bulk"]
+        ends["relaxation_strength_bulk"] = (max(low, _FIRST), max(high, _FIRST))
+    corners = np.array([*product(*(ends[name] for name in enter))]).T
+    fixed = {"poisson_ratio_bulk": np.asarray(ranges["poisson_ratio_bulk"][0])}
+    tissue = tissue_of({**dict(zip(enter, corners, strict=True)), **fixed}, substrate)
+    held = {name: ranges[name] for name in HELD if name in ranges}
+    for name, found in (
+        ("young_modulus_layer", tissue.log_modulus_layer),
+        ("young_modulus_bulk", tissue.log_modulus_bulk),
+    ):
+        held[name] = _stiffened(ranges[name], found - np.log(corners[enter.index(name)]))
+    largest = max(float(tissue.strength.max()), _WEAKEST)
+    if substrate != STANDARD_LINEAR_SOLID:
+        return held, largest, (0.0, 0.0)
+    return held, largest, (float(tissue.place.min()) - _SPARE, float(tissue.place.max()) + _SPARE)
+
+
+def _stiffened(given: tuple[float, float], growth: FloatArray) -> tuple[float, float]:
+    """Range of a modulus at v/b, Pa, from its own range and ln of what it is multiplied by there.
+
+    The tail of the prior and the fastest, most relaxing contact hardly meet: both ends reach as far as the root of the sum of the
+    squares of the two. Where one of them does not vary it is their sum.
+    """
+    low, high = np.log(given)
+    least, most = float(growth.min()), float(growth.max())
+    spare = _SPARE if most > least else 0.0
+    middle, shift = (low + high) / 2, (least + most) / 2
+    reach = float(np.hypot((high - low) / 2, (most - least) / 2)) + spare
+    return float(np.exp(middle + shift - reach)), float(np.exp(middle + shift + reach))
