@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray
+from skinbayes.errors import InputError
 from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
     LAYERS_GO_WITH,
@@ -88,6 +89,10 @@ def stribeck_model(
     contact: str = POINT, flow_factors: str = "none", substrate: str = ELASTIC
 ) -> ForwardModel:
     """Return the forward model of the ball, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
+    if contact == PAD and substrate != ELASTIC:
+        raise InputError(
+            f"options.contact: 'pad' goes with substrate = '{ELASTIC}' only; expected 'line' or 'point' on skin that relaxes"
+        )
     theory = Theory(contact, flow_factors, substrate)
     elastic = _elastic(theory)
     return elastic if substrate == ELASTIC else on_viscoelastic_skin(elastic, theory)

@@ -90,7 +90,7 @@ def prepare(
         ),
     )
     assert correction is not None
-    tabulated = RememberingStribeck(table, names, correction)
+    tabulated = RememberingStribeck(table, names, False, correction)
     middle, far, worst = (100 * float(error) for error in correction.held_out)
     of_ball = (
         " What memory adds to friction under the ball is taken from its cylinder, an approximation that these numbers do not "

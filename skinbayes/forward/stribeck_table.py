@@ -67,7 +67,7 @@ class TabulatedStribeck:
 
     table: FilmTable
     names: tuple[str, ...]
-    pad: bool = False
+    pad: bool
     fields = FIELDS  # observables and the fields of the friction they are
 
     def skin(self, inputs: Inputs) -> tuple[Inputs, RememberingTissue | None]:

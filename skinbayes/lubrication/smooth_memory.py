@@ -77,6 +77,11 @@ class SmoothWithMemory:
         """ln λ of the last point, dimensionless."""
         return self.elastic.highest
 
+    @property
+    def everywhere(self) -> bool:
+        """Whether the liquid itself ends where the drag does."""
+        return self.elastic.everywhere
+
     def __call__(
         self, log_number: FloatArray, outputs: range, slope: bool = False, end: FloatArray | None = None
     ) -> list[FloatArray]:
