@@ -24,6 +24,7 @@ from skinbayes.lubrication import (
     StribeckCurve,
     stribeck_curve,
     stribeck_curve_of_liquid,
+    tabulated_flow_factors,
 )
 from skinbayes.lubrication.viscoelastic_memory import ELASTIC
 from skinbayes.roughness import rms_height

@@ -154,7 +154,12 @@ def film_plan(held: Ranges, ranges: Ranges, tables: Tables, theory: Theory) -> F
             "inlet_length": float(fixed["inlet_length"]),
         }
     return FilmTablePlan(
-        held, spectrum=spectrum, largest_strain=float(fixed["strain_limit"]), **of_contact, **numbers
+        held,
+        spectrum=spectrum,
+        largest_strain=float(fixed["strain_limit"]),
+        flow_factors=theory.flow_factors,
+        **of_contact,
+        **numbers,
     )
 
 
@@ -185,11 +190,6 @@ def prepare(
     """
     names = model.input_names()
     check_one_inlet(ranges)
-    if theory.flow_factors != "none":
-        return replace(
-            model,
-            accuracy="Each curve is solved by itself, which is slow: tables of films hold no flow factors.",
-        )
     varying = [
         name
         for name, (low, high) in ranges.items()

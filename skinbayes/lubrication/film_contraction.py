@@ -26,7 +26,6 @@ from skinbayes.lubrication.film_table import (
     BOUNDARY,
     CENTRAL,
     COUETTE,
-    FASTEST,
     FRACTION,
     HYSTERESIS,
     MINIMUM,
@@ -61,6 +60,7 @@ class ContractedFilms:
     start : where those of each vector and row begin, shape ``(B, 1)`` or ``(B, N)``
     anchor, unit : ln λ that speeds are counted from and their unit, dimensionless, shape ``(B, 1)`` or ``(B, N)``
     speeds : number of speeds, dimensionless
+    fastest : the last of them, in that unit
     smooth : films of the smooth ball
     log_loss : ln sin δ of tissue that remembers, shape ``(B, 1)`` or ``(B, N)``; None if it is elastic
     end : where the drag of a ball ends, −1 … 1 between the ends of the table, shape ``(B, 1)`` or ``(B, N)``; None for a line
@@ -74,6 +74,7 @@ class ContractedFilms:
     anchor: FloatArray
     unit: FloatArray
     speeds: int
+    fastest: float
     smooth: SmoothFilms | SmoothWithMemory
     end: FloatArray | None
     scales: Scales
@@ -112,7 +113,7 @@ class ContractedFilms:
 
     def _evaluate(self, log_number: FloatArray, outputs: Sequence[int], slope: bool) -> list[FloatArray]:
         count = self.speeds
-        per_unit = (count - 1) / (FASTEST - SLOWEST)
+        per_unit = (count - 1) / (self.fastest - SLOWEST)
         position = ((log_number - self.anchor) / self.unit - SLOWEST) * per_unit
         held = np.minimum(np.maximum(position, 0.0), count - 1.0)
         cell, place = cell_of(held, count)
@@ -159,14 +160,14 @@ class _Ends:
         self.fast = np.nonzero(position > films.speeds - 1)
         self.held_number = log_number
         self.shape = position.shape
-        self.per_unit = (films.speeds - 1) / (FASTEST - SLOWEST)
+        self.per_unit = (films.speeds - 1) / (films.fastest - SLOWEST)
         if self.slow[0].size:
             first = np.broadcast_to(films.anchor + films.unit * SLOWEST, self.shape)[self.slow]
             self.held_number = log_number.copy()
             self.held_number[self.slow] = first
             self.below = log_number[self.slow] - first
         if self.fast[0].size:
-            last = np.broadcast_to(films.anchor + films.unit * FASTEST, self.shape)[self.fast]
+            last = np.broadcast_to(films.anchor + films.unit * films.fastest, self.shape)[self.fast]
             self.above = log_number[self.fast] - last
 
     def continued(self, output: int, value: FloatArray, rate: FloatArray | None) -> list[FloatArray]:
@@ -190,7 +191,9 @@ class _Ends:
         unit = np.broadcast_to(films.unit, self.shape)[where]
         rate = (films.flat.take(start + 2) - films.flat.take(start)) / 2 * self.per_unit / unit
         if output in _REFERENCE:
-            at = np.broadcast_to(films.anchor + films.unit * (SLOWEST if point == 0 else FASTEST), self.shape)
+            at = np.broadcast_to(
+                films.anchor + films.unit * (SLOWEST if point == 0 else films.fastest), self.shape
+            )
             reference = _REFERENCE[output]
             end = None if films.end is None else np.broadcast_to(films.end, self.shape)[where]
             wanted = range(reference, reference + 1)
@@ -240,6 +243,7 @@ def contract(
         flat.take(start),
         flat.take(start + 1),
         table.speeds,
+        table.fastest,
         table.smooth,
         end,
         scales,

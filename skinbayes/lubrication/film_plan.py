@@ -29,7 +29,9 @@ from skinbayes.lubrication.film_axes import (
     range_logarithms,
 )
 from skinbayes.lubrication.film_sweeps import Ball
-from skinbayes.lubrication.film_table import VERSION
+from skinbayes.lubrication.film_table import FASTEST, FASTEST_OF_FACTORS, SLOWEST, VERSION
+from skinbayes.lubrication.flow_factors import FlowFactors, PatirCheng
+from skinbayes.lubrication.gap_flow import TabulatedFlowFactors, tabulated_flow_factors
 from skinbayes.lubrication.stribeck import LARGEST_STRAIN
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
@@ -56,6 +58,7 @@ class FilmTablePlan:
     cells : of half a point contact, dimensionless
     largest_strain : b/Rc, dimensionless, that the table has to reach
     inlet_length : distance from a point contact, m, at which liquid and drag end; None for liquid without end
+    flow_factors : "none", "patir-cheng", or "gap" from the statistics of the gaps
 
     References
     ----------
@@ -84,6 +87,7 @@ class FilmTablePlan:
     cells: int = 400
     largest_strain: float = LARGEST_STRAIN
     inlet_length: float | None = None
+    flow_factors: str = "none"
 
     def __post_init__(self) -> None:
         if self.contact not in CONTACTS:
@@ -131,6 +135,7 @@ class FilmTablePlan:
             **{name: getattr(self, name) for name in ("speeds", "nodes", "checked", "contact")},
             **({"cells": self.cells} if self.contact == POINT else {}),
             **({} if self.inlet_length is None else {"inlet_length": self.inlet_length}),
+            **({} if self.flow_factors == "none" else {"flow_factors": self.flow_factors}),
         }
 
     def ball(self, log_parameters: FloatArray) -> Ball:
@@ -161,7 +166,39 @@ class FilmTablePlan:
             float(cylinder.load_per_length),
             modulus,
             self.inlet_length,
+            self._factors(place, layer, bulk, thickness, height),
         )
+
+    def _factors(
+        self, place: tuple[float, float], layer: float, bulk: float, thickness: float, height: float
+    ) -> FlowFactors | None:
+        """Flow factors of a material, which depend on ū/h alone: those of one ratio of moduli and one thickness are kept."""
+        if self.flow_factors == "none":
+            return None
+        if self.flow_factors == "patir-cheng":
+            return PatirCheng(height)
+        if place not in self._gap_factors:
+            skin = self._solid(layer, bulk, thickness)
+            self._gap_factors[place] = tabulated_flow_factors(
+                self.spectrum, skin, area_correction=self.area_correction
+            )
+        return self._gap_factors[place].scaled(height / self._rms_height)
+
+    @cached_property
+    def _gap_factors(self) -> dict[tuple[float, float], TabulatedFlowFactors]:
+        """Flow factors at the rms height of the spectrum."""
+        return {}
+
+    @property
+    def fastest(self) -> float:
+        """The last speed in the unit of a material, dimensionless."""
+        return FASTEST if self.flow_factors == "none" else FASTEST_OF_FACTORS
+
+    @property
+    def speeds_solved(self) -> int:
+        """Number of speeds up to the last one, dimensionless: ``speeds`` up to that without flow factors."""
+        more = (self.fastest - FASTEST) / (FASTEST - SLOWEST) * (self.speeds - 1)
+        return self.speeds + round(more)
 
     @cached_property
     def _materials(self) -> dict[tuple[float, float], tuple[AsperityLaw, float, float]]:

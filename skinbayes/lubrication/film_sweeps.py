@@ -15,6 +15,7 @@ from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.contact_films import LINE, contact_films, weighted
 from skinbayes.lubrication.film import LubricatedFilms, lubrication_number_per_product
 from skinbayes.lubrication.film_table import FRACTION
+from skinbayes.lubrication.flow_factors import FlowFactors
 from skinbayes.lubrication.point_film import CELLS, LubricatedPointFilms
 from skinbayes.lubrication.viscoelastic_film import ViscoelasticFilms, films_on
 from skinbayes.lubrication.viscoelastic_memory import passage_in_contact
@@ -50,6 +51,7 @@ class Ball:
     load_per_length : f_N, N/m
     reduced_modulus : E1*, Pa
     inlet_length : distance from the contact, m, at which liquid and drag end; None for liquid without end
+    flow_factors : of the flow between rough surfaces; None for trivial ones
     """
 
     law: AsperityLaw
@@ -62,6 +64,7 @@ class Ball:
     load_per_length: float
     reduced_modulus: float
     inlet_length: float | None = None
+    flow_factors: FlowFactors | None = None
 
     def outputs(
         self, log_number: FloatArray, nodes: int, *, contact: str = LINE, cells: int = CELLS
@@ -86,6 +89,7 @@ class Ball:
                 nodes=nodes + more,
                 cells=cells + 4 * more,
                 inlet_length=self.inlet_length,
+                flow_factors=self.flow_factors,
             )
             found = self._outputs_of(films, load, log_number, hertz, contact == LINE)
             if np.all(found > 0):

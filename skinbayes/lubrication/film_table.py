@@ -32,6 +32,9 @@ ANCHORS = 2
 SLOWEST, FASTEST = -1.3, 1.35
 """Ends of the speeds in the unit of a material. Asperities carry half of the load at 0 and 1e-3 of it at 1."""
 
+FASTEST_OF_FACTORS = 2.65
+"""The last of them with flow factors, which roughness still has where it no longer touches."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FilmTable:
@@ -45,6 +48,7 @@ class FilmTable:
     coefficients : dimensionless, shape ``(n1, …, nA, 2 + 6 (S + 2))``; Chebyshev coefficients along the axes of the
         anchors and of the B-spline coefficients of the six outputs
     speeds : S, number of speeds, dimensionless
+    fastest : the last of them in the unit of a material, dimensionless; the first is `SLOWEST`
     end_low, end_high : ln of the smallest and largest radius over that of the contact at which the drag of a ball ends,
         dimensionless; 0 of a line contact
     inlet_length : distance from the contact, m, at which liquid and drag end; None where the ball does
@@ -59,6 +63,7 @@ class FilmTable:
     contact: str
     coefficients: FloatArray
     speeds: int
+    fastest: float
     end_low: float
     end_high: float
     inlet_length: float | None

@@ -31,7 +31,7 @@ from skinbayes.lubrication.film_point import (
 )
 from skinbayes.lubrication.film_reference import SmoothFilms, smooth_films, smooth_films_with_end
 from skinbayes.lubrication.film_sweeps import FAINT, HALF, Ball
-from skinbayes.lubrication.film_table import FASTEST, SLOWEST, FilmTable
+from skinbayes.lubrication.film_table import SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
 from skinbayes.lubrication.point_film import CELLS
 from skinbayes.lubrication.stribeck import THICKEST_FILM
@@ -105,7 +105,7 @@ def build_film_table(
         more = [(0, count - size) for count, size in zip(axes.counts, coarse, strict=True)]
         anchor_terms = np.pad(anchor_terms, [*more, (0, 0)])
 
-        grid = np.linspace(SLOWEST, FASTEST, plan.speeds)
+        grid = np.linspace(SLOWEST, plan.fastest, plan.speeds_solved)
         numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
         balls = (plan.ball(axes.representative(place)) for place in places)
         outputs = solve("outputs", partial(_outputs, nodes=plan.nodes), zip(balls, numbers, strict=True))
@@ -136,7 +136,8 @@ def build_film_table(
         table = FilmTable(
             axes=axes,
             coefficients=np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
-            speeds=plan.speeds,
+            speeds=plan.speeds_solved,
+            fastest=plan.fastest,
             contact=plan.contact,
             end_low=ends[0],
             end_high=ends[1],

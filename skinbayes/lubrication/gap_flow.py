@@ -123,6 +123,11 @@ class TabulatedFlowFactors:
         object.__setattr__(self, "_curves", PchipInterpolator(np.log(place), table))
         object.__setattr__(self, "_slopes", PchipInterpolator(np.log(place), table).derivative())
 
+    def scaled(self, times: float) -> TabulatedFlowFactors:
+        """Those of a surface whose heights are ``times`` as large, dimensionless, and its separations with them."""
+        factors = (one._replace(shear_flow=one.shear_flow * times) for one in self.factors)
+        return TabulatedFlowFactors(self.separation * times, tuple(factors))
+
     def _at(self, separation: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         inside = (separation > self.separation[0]) & (separation < self.separation[-1])
         place = np.log(np.clip(separation, self.separation[0], self.separation[-1]))
