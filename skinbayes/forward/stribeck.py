@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -17,6 +18,7 @@ from skinbayes.forward.contact_inputs import (
     validate_contact,
 )
 from skinbayes.forward.pad import AREA_DEFAULTS, PAD, validate_pad, with_ball
+from skinbayes.forward.shear_thinning import SHEAR_THINNING, thinning
 from skinbayes.forward.stribeck_direct import (
     FIELDS,
     FLAGS,
@@ -86,7 +88,7 @@ def _profile(inputs: Inputs, tables: Tables, products: FloatArray, theory: Theor
 
 
 def stribeck_model(
-    contact: str = POINT, flow_factors: str = "none", substrate: str = ELASTIC
+    contact: str = POINT, flow_factors: str = "none", substrate: str = ELASTIC, shear_thinning: str = "none"
 ) -> ForwardModel:
     """Return the forward model of the ball, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
     if contact == PAD and substrate != ELASTIC:
@@ -95,7 +97,9 @@ def stribeck_model(
         )
     theory = Theory(contact, flow_factors, substrate)
     elastic = _elastic(theory)
-    return elastic if substrate == ELASTIC else on_viscoelastic_skin(elastic, theory)
+    model = elastic if substrate == ELASTIC else on_viscoelastic_skin(elastic, theory)
+    model = model if shear_thinning == "none" else thinning(model)
+    return replace(model, chosen={**theory._asdict(), "shear_thinning": shear_thinning})
 
 
 def _elastic(theory: Theory) -> ForwardModel:
@@ -104,9 +108,13 @@ def _elastic(theory: Theory) -> ForwardModel:
         name="stribeck",
         summary="friction of a ball on lubricated rough skin, its boundary, Couette and pressure-flow parts, and the films",
         observables=tuple(FIELDS),
-        options={"contact": (*CONTACTS, PAD), "flow_factors": FLOW_FACTORS, "substrate": SUBSTRATES},
+        options={
+            "contact": (*CONTACTS, PAD),
+            "flow_factors": FLOW_FACTORS,
+            "substrate": SUBSTRATES,
+            "shear_thinning": SHEAR_THINNING,
+        },
         variant=stribeck_model,
-        chosen=theory._asdict(),
         required=(
             "frictional_shear_stress",
             *(("nominal_contact_area", "inlet_length") if pad else ("sphere_radius",)),
