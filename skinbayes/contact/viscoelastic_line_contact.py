@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -43,12 +44,12 @@ class ViscoelasticLine(NamedTuple):
 
 
 class Passage(NamedTuple):
-    """A material that passes a line contact: what scales lengths and pressures, and the kernel in these units.
+    """A material that passes a contact: what scales lengths and pressures, and the kernel of a line contact in these units.
 
     Attributes
     ----------
     modulus : |E*| at v/b, Pa
-    half_width : b of the line contact of that modulus, m
+    half_width : b of the line contact of that modulus, or radius of the point contact, m
     instantaneous : J_0 times the modulus, dimensionless
     compliance : J_k times the modulus, dimensionless, shape ``(M,)``
     length : vθ_k/b, dimensionless, shape ``(M,)``
@@ -71,20 +72,31 @@ def passage(
     material: ViscoelasticMaterial, speed: float, *, load_per_length: float, cylinder_radius: float
 ) -> Passage:
     """Scales of a contact at v, m/s, under f_N, N/m, with Rc, m; modulus and half-width belong to each other."""
+    return passage_of(
+        material,
+        speed,
+        lambda modulus: float(
+            line_contact(load_per_length, cylinder_radius, reduced_modulus=modulus).half_width
+        ),
+    )
+
+
+def passage_of(material: ViscoelasticMaterial, speed: float, half_width: Callable[[float], float]) -> Passage:
+    """Scales of a contact at v, m/s, whose half-width or radius, m, is a function of the plane-strain modulus, Pa."""
     modulus = float(material.reduced_modulus(0.0).real)
     for _ in range(60):
-        half_width = float(line_contact(load_per_length, cylinder_radius, reduced_modulus=modulus).half_width)
-        last, modulus = modulus, float(abs(material.reduced_modulus(speed / half_width)))
+        width = half_width(modulus)
+        last, modulus = modulus, float(abs(material.reduced_modulus(speed / width)))
         if not abs(modulus / last - 1) > 1e-12:
             break
     creep = material.creep
     scale = modulus * (1 - float(material.poisson_ratio) ** 2)
     return Passage(
         modulus,
-        half_width,
+        width,
         float(creep.instantaneous * scale),
         creep.compliance * scale,
-        speed * creep.retardation_time / half_width,
+        speed * creep.retardation_time / width,
     )
 
 

@@ -74,7 +74,6 @@ class LubricatedPointFilms(NamedTuple):
     load_weight: FloatArray
 
 
-@np.errstate(all="ignore")
 def lubricated_point_films(
     speed_viscosity_product: ArrayLike,
     *,
@@ -130,7 +129,32 @@ def lubricated_point_films(
     >>> print(f"{films.central_film[0]:.2e} m, {films.couette[0]:.3f}")
     1.66e-04 m, 0.179
     """
-    product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
+    return point_films_of(
+        np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64)),
+        normal_force=normal_force,
+        sphere_radius=sphere_radius,
+        reduced_modulus=reduced_modulus,
+        asperities=asperities,
+        flow_factors=flow_factors,
+        rheology=rheology,
+        cells=cells,
+    )[0]
+
+
+@np.errstate(all="ignore")
+def point_films_of(
+    product: FloatArray,
+    *,
+    normal_force: float,
+    sphere_radius: float,
+    reduced_modulus: float,
+    asperities: AsperityLaw | None,
+    flow_factors: FlowFactors | None,
+    rheology: Rheology | None,
+    cells: int,
+    respond: Callable[[PointGrid], PointGrid] | None = None,
+) -> tuple[LubricatedPointFilms, FloatArray]:
+    """`lubricated_point_films`, on another solid if ``respond`` puts it into a grid; and its hysteresis ∫p (∂w/∂x) dA/F_N."""
     if cells < 40:
         raise InputError(f"cells is {cells}, but must be at least 40.")
     hertz = sphere_contact(normal_force, sphere_radius, reduced_modulus=reduced_modulus)
@@ -146,12 +170,13 @@ def lubricated_point_films(
     end = end_of_drag(slope)
     transport = transport_of(flow_factors, rheology, height, per_product)
     speed = None if rheology is None else product / rheology.low_shear_viscosity
-    count = _rings(cells) * _rays(cells)
-    films = _nothing(product.size, count)._replace(lubrication_number=wanted)
+    films = _nothing(product.size, cells_on_grid(cells))._replace(lubrication_number=wanted)
+    hysteresis = np.full(product.size, np.nan)
     fainter = wanted / number  # 1 but for the weakest flows, of which everything is linear in λ
     for rows, grid, film, pressure in point_sweeps(
-        number, known, law, transport, rough=rough, tail=tail, end=end, cells=cells
+        number, known, law, transport, rough=rough, tail=tail, end=end, cells=cells, respond=respond
     ):
+        hysteresis[rows] = slope / LOAD * _work(grid, pressure)
         carried = law(film)[0] + 0.0 * film
         fluid = pressure - carried
         drag = point_drag_integrals(
@@ -170,7 +195,13 @@ def lubricated_point_films(
         films.asperity_load_fraction[rows] = 1 - faint * (1 - carried @ grid.area / LOAD)
         films.minimum_film[rows] = film.min(axis=1) * height
         films.central_film[rows] = film[:, : grid.rays].mean(axis=1) * height
-    return films
+    return films, hysteresis
+
+
+def _work(grid: PointGrid, pressure: FloatArray) -> FloatArray:
+    """∫P (∂W/∂x) dA of the depth W, dimensionless, shape ``(K,)``."""
+    slope = 0.0 * pressure if grid.drag is None else pressure @ grid.drag.T
+    return np.asarray((slope * pressure) @ grid.area)
 
 
 def _nothing(rows: int, cells: int) -> LubricatedPointFilms:
@@ -193,10 +224,13 @@ def point_sweeps(
     tail: float,
     end: float,
     cells: int,
+    respond: Callable[[PointGrid], PointGrid] | None = None,
 ) -> Iterator[tuple[IndexArray, PointGrid, FloatArray, FloatArray]]:
     """Rows of lubrication numbers that share a grid, the grid, and their H and P, dimensionless, shape ``(K, n)``."""
     for rows in _by_reach(number, known):
         grid = grid_of(number[rows], rough, tail, end=end, cells=cells)
+        if respond is not None:
+            grid = respond(grid)
         solver = PointSolver(grid, law, float(number[rows].min()))
         states, _ = sweep(number[rows], solver, transport, (rough, *(rough + more for more in _APPROACHES)))
         missing = np.full(grid.radius.size, np.nan)
@@ -238,6 +272,11 @@ def grid_of(number: FloatArray, rough: float, tail: float, *, end: float, cells:
     if smallest > _WIDE:
         edge = max(edge, _PART_OF_WIDTH * smallest)
     return point_grid(_rings(cells), _rays(cells), edge, float(reach))
+
+
+def cells_on_grid(cells: int) -> int:
+    """Number of cells of a grid for which so many were asked."""
+    return _rings(cells) * _rays(cells)
 
 
 def _rays(cells: int) -> int:

@@ -31,6 +31,8 @@ class PointGrid(NamedTuple):
     width : of the faces, dimensionless, shape ``(F,)``
     width_along : width times the x component of the normal from left to right, dimensionless, shape ``(F,)``
     rim : cells of the last ring, in which the pressure is that of the far inlet, shape ``(n,)``
+    drag : slope ∂/∂x of the depth at each cell by unit pressures on a solid that has a memory, dimensionless, shape
+        ``(n, n)``; None for an elastic one, whose slope does no work
     """
 
     faces: FloatArray
@@ -45,6 +47,7 @@ class PointGrid(NamedTuple):
     width: FloatArray
     width_along: FloatArray
     rim: BoolArray
+    drag: FloatArray | None = None
 
 
 @lru_cache(maxsize=8)
