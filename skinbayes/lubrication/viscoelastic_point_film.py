@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import partial
 
 import numpy as np
 
@@ -141,7 +142,7 @@ def viscoelastic_point_films(
             flow_factors=flow_factors,
             rheology=None,
             cells=cells,
-            respond=lambda grid, scales=scales: passing(grid, scales),
+            respond=partial(passing, scales=scales),
         )
         found["hysteresis"][rows] = hysteresis
         found["reference_modulus"][rows], found["contact_radius"][rows] = scales.modulus, scales.half_width
