@@ -84,7 +84,7 @@ def curve(
         **size,
     )
     friction = found.friction_coefficient - found.hysteresis
-    return friction, float(found.hysteresis[np.argmin(friction)])
+    return friction, float(found.hysteresis[np.nanargmin(friction)])
 
 
 def features(
@@ -196,7 +196,7 @@ class Both(NamedTuple):
 
 def both(skin: ViscoelasticSkin, speed: float, size: dict[str, int]) -> Both:
     """One case; each contact over elastic skin with the modulus of the tissue at its own frequency."""
-    shifts, ratios = [], []
+    curves = {}
 
     def strain(skin: ViscoelasticSkin, contact: str) -> float:
         case = viscoelastic_stribeck_curve(
@@ -212,9 +212,15 @@ def both(skin: ViscoelasticSkin, speed: float, size: dict[str, int]) -> Both:
             layer=elastic(LAYER),
             layer_thickness=THICKNESS,
         )
-        curves = [curve(which, speed, size, contact, WIDE) for which in (plain, skin)]
-        level = float(np.exp(np.interp(np.log(0.1), np.log(WIDE), np.log(curves[0][0]))))
-        reference, found = (features(*one, level=level, products=WIDE) for one in curves)
+        curves[contact] = [curve(which, speed, size, contact, WIDE) for which in (plain, skin)]
+    known = np.isfinite([friction for pair in curves.values() for friction, _ in pair]).all(axis=0)
+    products, shifts, ratios = WIDE[known], [], []  # films of soft tissue end before 1 N/m
+    place = np.log(products)
+    for pair in curves.values():
+        (plain_friction, plain_loss), (friction, loss) = ((one[0][known], one[1]) for one in pair)
+        level = float(np.exp(np.interp(np.log(0.1), place, np.log(plain_friction))))
+        reference = features(plain_friction, plain_loss, level, products)
+        found = features(friction, loss, level, products)
         shifts.append(
             (
                 *(a / b for a, b in zip(found[:3], reference[:3], strict=True)),
@@ -222,8 +228,7 @@ def both(skin: ViscoelasticSkin, speed: float, size: dict[str, int]) -> Both:
                 found.hysteresis,
             )
         )
-        ratios.append(np.log(curves[1][0] / curves[0][0]))
-    place = np.log(WIDE)
+        ratios.append(np.log(friction / plain_friction))
     later = CubicSpline(place, ratios[0])(np.maximum(place + np.log(SLOWER), place[0]))
     return Both(*shifts, *(float(np.expm1(np.abs(guess - ratios[1]).max())) for guess in (ratios[0], later)))
 
