@@ -8,8 +8,8 @@ has at 0.1 N/m. A number above 1 is a curve that lies at higher speeds. Hysteres
 depends on ηv, and printed beside it. These curves are those of the cylinder of Eq. 9. A second table sets the ball in two
 dimensions beside it, each over elastic skin with the modulus of the tissue at its own frequency, v/a and v/b, and says by how
 much the friction of the ball is missed if that of the elastic ball is multiplied by the ratio of the cylinders, from 1e-5 to 1
-N/m, at the same ηv or at 0.8 of it, where cylinders carry the same load. Loss is chosen so that pressing in a ball 5 mm deep at
-2.5 mm/s and drawing it back costs a quarter of the work, as quoted in the paper, or 60 % for strong loss.
+N/m, at the same v or at the same frequency, v/b of the cylinder being v/a of the ball. Loss is chosen so that pressing in a ball
+5 mm deep at 2.5 mm/s and drawing it back costs a quarter of the work, as quoted in the paper, or 60 % for strong loss.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from skinbayes.contact import (
     ViscoelasticSkin,
     constant_loss_solid,
     indentation_cycle,
+    sphere_contact,
     standard_linear_solid,
 )
 from skinbayes.lubrication import CELLS, LINE, NODES, POINT, viscoelastic_stribeck_curve
@@ -35,7 +36,6 @@ from skinbayes.roughness import named_surface
 
 PRODUCTS = np.geomspace(2e-5, 0.3, 31)  # N/m
 WIDE = np.geomspace(1e-5, 1.0, 36)  # N/m
-SLOWER = 0.8  # speed of a cylinder over that of the ball, of the same load on asperities
 SPEED = 0.01  # m/s
 BULK, LAYER, THICKNESS = 20e3, 7e6, 20e-6
 RATE, DEPTH, RADIUS, FORCE = 2.5e-3, 5e-3, 8e-3, 0.2
@@ -190,35 +190,33 @@ class Both(NamedTuple):
 
     line: tuple[float, ...]
     point: tuple[float, ...]
-    same_product: float
-    slower: float
+    same_speed: float
+    same_frequency: float
+
+
+def strain(skin: ViscoelasticSkin, speed: float, contact: str) -> float:
+    """b/Rc with the modulus at the frequency of the contact, which goes as E*^(−1/3)."""
+    return float(
+        viscoelastic_stribeck_curve(
+            speed, 0.01 / speed, normal_force=FORCE, sphere_radius=RADIUS, spectrum=named_surface("paper_reference"),
+            skin=skin, contact=contact, frictional_shear_stress=0.0,
+        ).strain
+    )  # fmt: skip
 
 
 def both(skin: ViscoelasticSkin, speed: float, size: dict[str, int]) -> Both:
     """One case; each contact over elastic skin with the modulus of the tissue at its own frequency."""
-    curves = {}
-
-    def strain(skin: ViscoelasticSkin, contact: str) -> float:
-        case = viscoelastic_stribeck_curve(
-            speed, 0.01 / speed, normal_force=FORCE, sphere_radius=RADIUS, spectrum=named_surface("paper_reference"),
-            skin=skin, contact=contact, frictional_shear_stress=0.0, **size,
-        )  # fmt: skip
-        return float(case.strain)
-
-    for contact in (LINE, POINT):
-        # b/Rc of the cylinder of Eq. 9 goes as E*^(−1/3)
-        plain = ViscoelasticSkin(
-            bulk=elastic(BULK * (strain(PLAIN, contact) / strain(skin, contact)) ** 3),
-            layer=elastic(LAYER),
-            layer_thickness=THICKNESS,
-        )
-        curves[contact] = [curve(which, speed, size, contact, WIDE) for which in (plain, skin)]
-    known = np.isfinite([friction for pair in curves.values() for friction, _ in pair]).all(axis=0)
+    narrower = HALF_WIDTH / float(sphere_contact(FORCE, RADIUS, reduced_modulus=BULK / 0.75).contact_radius)
+    pairs = []
+    for contact, v in ((LINE, speed), (POINT, speed), (LINE, speed * narrower)):
+        held = BULK * (strain(PLAIN, v, contact) / strain(skin, v, contact)) ** 3
+        plain = ViscoelasticSkin(bulk=elastic(held), layer=elastic(LAYER), layer_thickness=THICKNESS)
+        pairs.append([curve(which, v, size, contact, WIDE) for which in (plain, skin)])
+    known = np.isfinite([friction for pair in pairs for friction, _ in pair]).all(axis=0)
     products, shifts, ratios = WIDE[known], [], []  # films of soft tissue end before 1 N/m
-    place = np.log(products)
-    for pair in curves.values():
+    for pair in pairs:
         (plain_friction, plain_loss), (friction, loss) = ((one[0][known], one[1]) for one in pair)
-        level = float(np.exp(np.interp(np.log(0.1), place, np.log(plain_friction))))
+        level = float(np.exp(np.interp(np.log(0.1), np.log(products), np.log(plain_friction))))
         reference = features(plain_friction, plain_loss, level, products)
         found = features(friction, loss, level, products)
         shifts.append(
@@ -229,8 +227,8 @@ def both(skin: ViscoelasticSkin, speed: float, size: dict[str, int]) -> Both:
             )
         )
         ratios.append(np.log(friction / plain_friction))
-    later = CubicSpline(place, ratios[0])(np.maximum(place + np.log(SLOWER), place[0]))
-    return Both(*shifts, *(float(np.expm1(np.abs(guess - ratios[1]).max())) for guess in (ratios[0], later)))
+    worst = (float(np.expm1(np.abs(ratios[line] - ratios[1]).max())) for line in (0, 2))
+    return Both(*shifts[:2], *worst)
 
 
 def main() -> None:
@@ -256,12 +254,12 @@ def main() -> None:
         half, minimum, rising = (a / b for a, b in zip(row[:3], reference[:3], strict=True))
         print(f"{name:58s} {half:5.2f} {minimum:7.2f} {rising:7.2f} | {row.least:.3f} {row.hysteresis:.3f}")
     print(
-        f"\n{'cylinder, then ball':58s} half  minimum rising   least  hysteresis | ratio of cylinders, at 0.8 ηv"
+        f"\n{'cylinder, then ball':58s} half  minimum rising   least  hysteresis | missed by the cylinders, at v/a = v/b"
     )
     for name, two in beside.items():
         for one in (two.line, two.point):
             said = "  ".join(f"{value:.3f}" for value in one)
-            end = f" | {two.same_product:.1%} {two.slower:.1%}" if one is two.point else ""
+            end = f" | {two.same_speed:.1%} {two.same_frequency:.1%}" if one is two.point else ""
             print(f"{name if one is two.line else '':58s} {said}{end}")
 
 

@@ -14,6 +14,12 @@ from skinbayes.contact.gaps import GapDistribution, gap_distribution
 from skinbayes.contact.hertz import HertzSphere, sphere_contact, sphere_force
 from skinbayes.contact.homogeneous import HomogeneousSolid
 from skinbayes.contact.layered import LayeredSkin
+from skinbayes.contact.layered_contact import (
+    LayeredLine,
+    LayeredSphere,
+    layered_line_contact,
+    layered_sphere_contact,
+)
 from skinbayes.contact.layers import layered_modulus
 from skinbayes.contact.line_contact import (
     EquivalentCylinder,
@@ -60,7 +66,9 @@ __all__ = [
     "HertzSphere",
     "HomogeneousSolid",
     "IndentationCycle",
+    "LayeredLine",
     "LayeredSkin",
+    "LayeredSphere",
     "ViscoelasticLine",
     "ViscoelasticMaterial",
     "ViscoelasticSkin",
@@ -77,7 +85,9 @@ __all__ = [
     "indentation_creep",
     "indentation_cycle",
     "indentation_relaxation",
+    "layered_line_contact",
     "layered_modulus",
+    "layered_sphere_contact",
     "line_contact",
     "material_of_dynamic_moduli",
     "mean_separation",
