@@ -119,7 +119,7 @@ def viscoelastic_point_films(
     >>> tissue = standard_linear_solid(20e3, 28e3, relaxation_time=0.1)
     >>> films = viscoelastic_point_films([1e-5, 0.01], [1e4, 10.0], normal_force=0.2, sphere_radius=8e-3, material=tissue)
     >>> print(films.central_film.round(6), films.couette.round(3), films.hysteresis.round(3))
-    [0.000166 0.00016 ] [0.179 0.182] [0.    0.022]
+    [0.000166 0.000153] [0.179 0.184] [0.    0.021]
     """
     given = (np.asarray(x, dtype=np.float64) for x in (speed, viscosity))
     speeds, viscosities = np.broadcast_arrays(*(np.atleast_1d(x) for x in given))
