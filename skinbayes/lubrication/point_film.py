@@ -184,7 +184,7 @@ def point_films_of(
             rheology=rheology, speed=None if speed is None else speed[rows],
         )  # fmt: skip
         faint = fainter[rows]
-        films.position[rows] = grid.radius * np.cos(grid.angle) * radius
+        films.position[rows] = (grid.radius * np.cos(grid.angle) + grid.centre) * radius
         films.lateral_position[rows] = grid.radius * np.sin(grid.angle) * radius
         films.load_weight[rows] = grid.area * radius**2
         films.separation[rows] = film * height
@@ -194,8 +194,22 @@ def point_films_of(
         films.pressure_flow[rows] = faint * 3 * slope / (4 * np.pi) * drag.pressure_flow
         films.asperity_load_fraction[rows] = 1 - faint * (1 - carried @ grid.area / LOAD)
         films.minimum_film[rows] = film.min(axis=1) * height
-        films.central_film[rows] = film[:, : grid.rays].mean(axis=1) * height
+        films.central_film[rows] = _at_middle(grid, film) * height
     return films, hysteresis
+
+
+def _at_middle(grid: PointGrid, film: FloatArray) -> FloatArray:
+    """H under the middle of the ball, shape ``(K,)``: the innermost ring, or the ray towards it if it is elsewhere."""
+    middle = film[:, : grid.rays].mean(axis=1)
+    if grid.centre == 0:
+        return np.asarray(middle)
+    ray = grid.rays - 1 if grid.centre > 0 else 0
+    places = np.concatenate([[0.0], grid.radius[ray :: grid.rays]])
+    found = [
+        np.interp(abs(grid.centre), places, [start, *row])
+        for start, row in zip(middle, film[:, ray :: grid.rays], strict=True)
+    ]
+    return np.array(found)
 
 
 def _work(grid: PointGrid, pressure: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from skinbayes.contact.viscoelastic_line_contact import Passage, passage_of
 from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import AsperityLaw
 from skinbayes.lubrication.flow_factors import FlowFactors
+from skinbayes.lubrication.point_dry import edges
 from skinbayes.lubrication.point_film import CELLS, cells_on_grid, point_films_of
 from skinbayes.lubrication.point_grid import PointGrid
 from skinbayes.lubrication.point_memory import point_memory
@@ -165,13 +167,14 @@ def passage_under_ball(
 
 
 def passing(grid: PointGrid, scales: Passage) -> PointGrid:
-    """The grid with the kernel of a solid that passes, and the slope of its depth."""
-    memory = point_memory(
-        grid,
-        instantaneous=scales.instantaneous,
-        compliance=scales.compliance,
-        length=scales.length,
-    )
+    """The grid stretched to the dry contact on a solid that passes, with its kernel and the slope of its depth."""
+    solid: dict[str, Any] = {
+        "instantaneous": scales.instantaneous, "compliance": scales.compliance, "length": scales.length,
+    }  # fmt: skip
+    lead, trail = edges(**solid)
+    if np.isfinite(trail - lead):
+        grid = grid.stretched((trail - lead) / 2, (trail + lead) / 2)
+    memory = point_memory(grid, **solid)
     # work is even in the direction of the passage: the mean over both has no error of the slope that does none
     cells = np.arange(grid.radius.size).reshape(-1, grid.rays)[:, ::-1].ravel()
     both = (memory.slope + memory.slope[np.ix_(cells, cells)]) / 2
