@@ -19,24 +19,24 @@ class LayeredSphere(NamedTuple):
 
     Attributes
     ----------
+    position : r, from the centre to the edge, m, shape ``(K, 101)``
+    pressure : p(r), Pa, shape ``(K, 101)``
     contact_radius : a, m, shape ``(K,)``
     mean_pressure : load over contact area, Pa, shape ``(K,)``
     maximum_pressure : largest pressure, at the centre on a soft surface, Pa, shape ``(K,)``
     indentation : δ, approach of distant points, m, shape ``(K,)``
     equivalent_modulus : E* of the half-space with the same a under the same ball and load, 3 F_N R/(4a³), Pa, shape ``(K,)``
     equivalent_radius : of the ball that has the same a on the half-space below the layers under the same load, m, shape ``(K,)``
-    position : r, from the centre to the edge, m, shape ``(K, 101)``
-    pressure : p(r), Pa, shape ``(K, 101)``
     """
 
+    position: FloatArray
+    pressure: FloatArray
     contact_radius: FloatArray
     mean_pressure: FloatArray
     maximum_pressure: FloatArray
     indentation: FloatArray
     equivalent_modulus: FloatArray
     equivalent_radius: FloatArray
-    position: FloatArray
-    pressure: FloatArray
 
 
 class LayeredLine(NamedTuple):
@@ -44,22 +44,22 @@ class LayeredLine(NamedTuple):
 
     Attributes
     ----------
+    position : x, from the middle to the edge, m, shape ``(K, 101)``
+    pressure : p(x), Pa, shape ``(K, 101)``
     half_width : b, m, shape ``(K,)``
     mean_pressure : load over width, Pa, shape ``(K,)``
     maximum_pressure : largest pressure, Pa, shape ``(K,)``
     equivalent_modulus : E* of the half-space with the same b under the same cylinder and load, 4 f_N Rc/(πb²), Pa, shape ``(K,)``
     equivalent_radius : of the cylinder that has the same b on the half-space below the layers, m, shape ``(K,)``
-    position : x, from the middle to the edge, m, shape ``(K, 101)``
-    pressure : p(x), Pa, shape ``(K, 101)``
     """
 
+    position: FloatArray
+    pressure: FloatArray
     half_width: FloatArray
     mean_pressure: FloatArray
     maximum_pressure: FloatArray
     equivalent_modulus: FloatArray
     equivalent_radius: FloatArray
-    position: FloatArray
-    pressure: FloatArray
 
 
 def layered_sphere_contact(
@@ -117,8 +117,8 @@ def layered_sphere_contact(
         mean = force / (np.pi * size * size)
         equivalent = stack.surface * amounts[0] / 3
         rows.append(
-            (size, mean, pressure.max(), depth, equivalent, sphere_radius * stack.deepest / equivalent,
-             size * _PLACES, pressure)
+            (size * _PLACES, pressure, size, mean, pressure.max(), depth, equivalent,
+             sphere_radius * stack.deepest / equivalent)
         )  # fmt: skip
     return LayeredSphere(*(np.array(part) for part in zip(*rows, strict=True)))
 
@@ -168,8 +168,8 @@ def layered_line_contact(
         pressure = _pressure_of_cylinder(stack.surface * size / (4 * cylinder_radius) * amounts)
         equivalent = stack.surface * amounts[0] / 2
         rows.append(
-            (size, load / (2 * size), pressure.max(), equivalent, cylinder_radius * stack.deepest / equivalent,
-             size * _PLACES, pressure)
+            (size * _PLACES, pressure, size, load / (2 * size), pressure.max(), equivalent,
+             cylinder_radius * stack.deepest / equivalent)
         )  # fmt: skip
     return LayeredLine(*(np.array(part) for part in zip(*rows, strict=True)))
 

@@ -108,7 +108,8 @@ def viscoelastic_point_films(
     Notes
     -----
     Linear and quasi-static: v is far below the speed of sound. Drag of the liquid is counted up to the edge of the ball, as in
-    `lubricated_point_films`.
+    `lubricated_point_films`. Cells are finest around the dry contact, which loss moves upstream. Smooth films thinner than about
+    0.003 a²/R are not found where loss is strong; with asperities no such limit was met.
 
     References
     ----------
