@@ -171,7 +171,7 @@ def _one(
     position = middle - half * np.cos(np.linspace(0, np.pi, nodes))
     kernel = scales.kernel(position)
     pressure = _pressure(position, kernel)
-    lead, trail = _zeros(position, pressure)
+    lead, trail = ends_of_contact(position, pressure)
     b = scales.half_width
     return (
         position * b,
@@ -185,7 +185,7 @@ def _one(
 
 def edges(scales: Passage) -> tuple[float, float]:
     """X at which smooth dry contact begins and ends, dimensionless, to about 0.02; −1 and 1 where the solid is elastic."""
-    found = _zeros(_PLACES, _pressure(_PLACES, scales.kernel(_PLACES)))
+    found = ends_of_contact(_PLACES, _pressure(_PLACES, scales.kernel(_PLACES)))
     elastic = _elastic_edges()
     # the error of the coarse nodes is nearly the same for both
     return found[0] - elastic[0] - 1, found[1] - elastic[1] + 1
@@ -194,7 +194,7 @@ def edges(scales: Passage) -> tuple[float, float]:
 @lru_cache(maxsize=1)
 def _elastic_edges() -> tuple[float, float]:
     none = np.zeros(0)
-    return _zeros(_PLACES, _pressure(_PLACES, Passage(1.0, 1.0, 1.0, none, none).kernel(_PLACES)))
+    return ends_of_contact(_PLACES, _pressure(_PLACES, Passage(1.0, 1.0, 1.0, none, none).kernel(_PLACES)))
 
 
 def hysteresis_integral(position: FloatArray, pressure: FloatArray, kernel: MovingKernel) -> FloatArray:
@@ -228,7 +228,7 @@ def _pressure(position: FloatArray, kernel: MovingKernel) -> FloatArray:
     return np.full_like(position, np.nan)
 
 
-def _zeros(position: FloatArray, pressure: FloatArray) -> tuple[float, float]:
+def ends_of_contact(position: FloatArray, pressure: FloatArray) -> tuple[float, float]:
     """Ends of the contact, where a parabola, p² against x, comes to zero, between the last node that touches and the next."""
     touching = np.flatnonzero(pressure > 0)
     if touching.size < 4 or touching[0] == 0 or touching[-1] == position.size - 1:

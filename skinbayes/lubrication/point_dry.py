@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from skinbayes.arrays import FloatArray
+from skinbayes.contact.viscoelastic_line_contact import ends_of_contact
 from skinbayes.lubrication.point_grid import PointGrid, point_grid
 from skinbayes.lubrication.point_memory import PointMemory, point_memory
 from skinbayes.lubrication.point_newton import LOAD
@@ -52,17 +53,10 @@ def _elastic_ends() -> tuple[float, float]:
 
 
 def _ends(memory: PointMemory) -> tuple[float, float]:
-    """x where p², which falls as a straight line at the edge, comes to zero, on the rays nearest to the inlet and the outlet."""
+    """Ends of the contact on the rays nearest to the inlet and the outlet; nan if none was found."""
     grid = point_grid(*_GRID)
     pressure = dry_pressure(grid._replace(kernel=memory.deflection @ grid.kernel)).reshape(-1, grid.rays)
     radius = grid.radius[:: grid.rays]
-    ends = []
-    for ray in (pressure[:, -1], pressure[:, 0]):
-        last = int(np.count_nonzero(ray > 0)) - 1
-        if not 2 <= last < radius.size - 1:
-            return np.nan, np.nan
-        before = last - 2
-        fall = (ray[before] ** 2 - ray[last] ** 2) / (radius[last] - radius[before])
-        zero = radius[last] + ray[last] ** 2 / fall
-        ends.append(float(np.clip(zero, radius[last], radius[last + 1])))
-    return -ends[0], ends[1]
+    return ends_of_contact(
+        np.concatenate([-radius[::-1], radius]), np.concatenate([pressure[::-1, -1], pressure[:, 0]])
+    )
