@@ -190,11 +190,14 @@ def test_curve_of_a_ball() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("material", "error"), [(ZENER, 0.007), (STRONG, 0.013)])
+@pytest.mark.parametrize(("material", "error"), [(ZENER, 0.004), (STRONG, 0.007)])
 def test_grid_refinement(material: ViscoelasticMaterial, error: float) -> None:
     coarse, fine = (
         viscoelastic_point_films(0.02, PRODUCT / 0.02, material=material, asperities=LAW, cells=cells, **BALL)
         for cells in (360, 1440)
     )
-    for name in ("couette", "asperity_load_fraction", "hysteresis"):
-        np.testing.assert_allclose(getattr(coarse, name), getattr(fine, name), rtol=error, atol=1e-3)
+    friction = [
+        1.447 * films.asperity_load_fraction + films.couette + films.pressure_flow for films in (coarse, fine)
+    ]
+    np.testing.assert_allclose(*friction, rtol=error)
+    np.testing.assert_allclose(coarse.hysteresis, fine.hysteresis, rtol=0.018)
