@@ -16,6 +16,12 @@ from skinbayes.contact.hertz import HertzSphere, sphere_contact, sphere_force, s
 from skinbayes.contact.homogeneous import HomogeneousSolid
 from skinbayes.contact.indentation_loss import loss_fraction_of_constant_loss, loss_fraction_of_relaxation
 from skinbayes.contact.layered import LayeredSkin
+from skinbayes.contact.layered_contact import (
+    LayeredLine,
+    LayeredSphere,
+    layered_line_contact,
+    layered_sphere_contact,
+)
 from skinbayes.contact.layers import layered_modulus
 from skinbayes.contact.line_contact import (
     EquivalentCylinder,
@@ -65,7 +71,9 @@ __all__ = [
     "HertzSphere",
     "HomogeneousSolid",
     "IndentationCycle",
+    "LayeredLine",
     "LayeredSkin",
+    "LayeredSphere",
     "StackedSkin",
     "ViscoelasticLine",
     "ViscoelasticMaterial",
@@ -84,7 +92,9 @@ __all__ = [
     "indentation_cycle",
     "indentation_force_at_rate",
     "indentation_relaxation",
+    "layered_line_contact",
     "layered_modulus",
+    "layered_sphere_contact",
     "line_contact",
     "loss_fraction_of_constant_loss",
     "loss_fraction_of_relaxation",

@@ -45,12 +45,12 @@ class ViscoelasticLine(NamedTuple):
 
 
 class Passage(NamedTuple):
-    """A material that passes a line contact: what scales lengths and pressures, and the kernel in these units.
+    """A material that passes a contact: what scales lengths and pressures, and the kernel of a line contact in these units.
 
     Attributes
     ----------
     modulus : |E*| at v/b, Pa
-    half_width : b of the line contact of that modulus, m
+    half_width : b of the line contact of that modulus, or radius of the point contact, m
     instantaneous : J_0 times the modulus, dimensionless
     compliance : J_k times the modulus, dimensionless, shape ``(M,)``
     length : vθ_k/b, dimensionless, shape ``(M,)``
@@ -96,21 +96,28 @@ def passage(
     material: AnyMaterial, speed: float, *, load_per_length: float, cylinder_radius: float
 ) -> AnyPassage:
     """Scales of a contact at v, m/s, under f_N, N/m, with Rc, m; modulus and half-width belong to each other."""
+    return passage_of(
+        material,
+        speed,
+        lambda modulus: float(
+            line_contact(load_per_length, cylinder_radius, reduced_modulus=modulus).half_width
+        ),
+    )
 
-    def half_width_of(modulus: float) -> float:
-        return float(line_contact(load_per_length, cylinder_radius, reduced_modulus=modulus).half_width)
 
-    modulus, half_width = modulus_in_contact(material, speed, half_width_of)
+def passage_of(material: AnyMaterial, speed: float, half_width_of: Callable[[float], float]) -> AnyPassage:
+    """Scales of a contact at v, m/s, whose half-width or radius, m, is a function of the plane-strain modulus, Pa."""
+    modulus, width = modulus_in_contact(material, speed, half_width_of)
     if isinstance(material, ConstantLossMaterial):
-        return PowerLawPassage(modulus, half_width, float(material.power))
+        return PowerLawPassage(modulus, width, float(material.power))
     creep = material.creep
     scale = modulus * (1 - float(material.poisson_ratio) ** 2)
     return Passage(
         modulus,
-        half_width,
+        width,
         float(creep.instantaneous * scale),
         creep.compliance * scale,
-        speed * creep.retardation_time / half_width,
+        speed * creep.retardation_time / width,
     )
 
 
@@ -202,7 +209,7 @@ def _one(
     position = middle - half * np.cos(np.linspace(0, np.pi, nodes))
     kernel = scales.kernel(position)
     pressure = _pressure(position, kernel)
-    lead, trail = _zeros(position, pressure)
+    lead, trail = ends_of_contact(position, pressure)
     b = scales.half_width
     return (
         position * b,
@@ -216,7 +223,7 @@ def _one(
 
 def edges(scales: AnyPassage) -> tuple[float, float]:
     """X at which smooth dry contact begins and ends, dimensionless, to about 0.02; −1 and 1 where the solid is elastic."""
-    found = _zeros(_PLACES, _pressure(_PLACES, scales.kernel(_PLACES)))
+    found = ends_of_contact(_PLACES, _pressure(_PLACES, scales.kernel(_PLACES)))
     elastic = _elastic_edges()
     # the error of the coarse nodes is nearly the same for both
     return found[0] - elastic[0] - 1, found[1] - elastic[1] + 1
@@ -225,7 +232,7 @@ def edges(scales: AnyPassage) -> tuple[float, float]:
 @lru_cache(maxsize=1)
 def _elastic_edges() -> tuple[float, float]:
     none = np.zeros(0)
-    return _zeros(_PLACES, _pressure(_PLACES, Passage(1.0, 1.0, 1.0, none, none).kernel(_PLACES)))
+    return ends_of_contact(_PLACES, _pressure(_PLACES, Passage(1.0, 1.0, 1.0, none, none).kernel(_PLACES)))
 
 
 def hysteresis_integral(position: FloatArray, pressure: FloatArray, kernel: MovingKernel) -> FloatArray:
@@ -259,7 +266,7 @@ def _pressure(position: FloatArray, kernel: MovingKernel) -> FloatArray:
     return np.full_like(position, np.nan)
 
 
-def _zeros(position: FloatArray, pressure: FloatArray) -> tuple[float, float]:
+def ends_of_contact(position: FloatArray, pressure: FloatArray) -> tuple[float, float]:
     """Ends of the contact, where a parabola, p² against x, comes to zero, between the last node that touches and the next."""
     touching = np.flatnonzero(pressure > 0)
     if touching.size < 4 or touching[0] == 0 or touching[-1] == position.size - 1:

@@ -45,6 +45,7 @@ from skinbayes.lubrication.stribeck import (
     stribeck_curve,
 )
 from skinbayes.lubrication.viscoelastic_film import ViscoelasticFilms, viscoelastic_films
+from skinbayes.lubrication.viscoelastic_point_film import ViscoelasticPointFilms, viscoelastic_point_films
 from skinbayes.lubrication.viscoelastic_stribeck import (
     SPHERE_OVER_CYLINDER,
     ViscoelasticStribeckCurve,
@@ -87,6 +88,7 @@ __all__ = [
     "TabulatedFriction",
     "TrivialFlowFactors",
     "ViscoelasticFilms",
+    "ViscoelasticPointFilms",
     "ViscoelasticStribeckCurve",
     "asperity_law",
     "asperity_table",
@@ -104,5 +106,6 @@ __all__ = [
     "tabulated_friction_of_liquids",
     "thinned_viscosity",
     "viscoelastic_films",
+    "viscoelastic_point_films",
     "viscoelastic_stribeck_curve",
 ]

@@ -68,7 +68,7 @@ def point_drag_integrals(
     thickness = np.ones_like(film)
     if rheology is not None and speed is not None:
         thickness = rheology.relative(speed[:, None] / np.maximum(separation, 1e-300))[0]
-    inside = np.repeat(np.diff(np.minimum(grid.faces, end) ** 2) / np.diff(grid.faces**2), grid.rays)
+    inside = _inside(grid, end)
     wet = fluid > _EMPTY
     filled = _filled(grid, film + shear / height, wet)
     couette = (weights.shear * thickness * filled / film) @ (grid.area * inside)
@@ -85,6 +85,16 @@ def point_drag_integrals(
     slopes = 2 - (weights.pressure[:, left] + weights.pressure[:, right]) / 2
     share = grid.width_along * (inside[left] + inside[right])  # both halves of the plane
     return DragIntegrals(np.asarray(couette), np.asarray((slopes * climb) @ share))
+
+
+def _inside(grid: PointGrid, end: float) -> FloatArray:
+    """Part of each cell that lies within ``end`` of the middle of the ball, shape ``(n,)``."""
+    if grid.centre == 0:
+        return np.repeat(np.diff(np.minimum(grid.faces, end) ** 2) / np.diff(grid.faces**2), grid.rays)
+    angle = grid.angle[: grid.rays]
+    edge = np.sqrt(end**2 - (grid.centre * np.sin(angle)) ** 2) - grid.centre * np.cos(angle)
+    faces = grid.faces[:, None]
+    return np.asarray(np.diff(np.minimum(faces, edge) ** 2, axis=0) / np.diff(faces**2, axis=0)).ravel()
 
 
 def _filled(grid: PointGrid, volume: FloatArray, wet: BoolArray) -> FloatArray:

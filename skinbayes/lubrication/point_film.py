@@ -75,7 +75,6 @@ class LubricatedPointFilms(NamedTuple):
     load_weight: FloatArray
 
 
-@np.errstate(all="ignore")
 def lubricated_point_films(
     speed_viscosity_product: ArrayLike,
     *,
@@ -135,7 +134,34 @@ def lubricated_point_films(
     >>> print(f"{films.central_film[0]:.2e} m, {films.couette[0]:.3f}")
     1.66e-04 m, 0.179
     """
-    product = np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64))
+    return point_films_of(
+        np.atleast_1d(np.asarray(speed_viscosity_product, dtype=np.float64)),
+        normal_force=normal_force,
+        sphere_radius=sphere_radius,
+        reduced_modulus=reduced_modulus,
+        asperities=asperities,
+        flow_factors=flow_factors,
+        rheology=rheology,
+        cells=cells,
+        inlet_length=inlet_length,
+    )[0]
+
+
+@np.errstate(all="ignore")
+def point_films_of(
+    product: FloatArray,
+    *,
+    normal_force: float,
+    sphere_radius: float,
+    reduced_modulus: float,
+    asperities: AsperityLaw | None,
+    flow_factors: FlowFactors | None,
+    rheology: Rheology | None,
+    cells: int,
+    inlet_length: float | None = None,
+    respond: Callable[[PointGrid], PointGrid] | None = None,
+) -> tuple[LubricatedPointFilms, FloatArray]:
+    """`lubricated_point_films`, on another solid if ``respond`` puts it into a grid; and its hysteresis ∫p (∂w/∂x) dA/F_N."""
     if cells < 40:
         raise InputError(f"cells is {cells}, but must be at least 40.")
     if inlet_length is not None and not 0 < inlet_length < np.inf:
@@ -155,8 +181,8 @@ def lubricated_point_films(
     end = end_of_drag(slope) if inlet_length is None else 1 + inlet_length / radius
     transport = transport_of(flow_factors, rheology, height, per_product)
     speed = None if rheology is None else product / rheology.low_shear_viscosity
-    count = _rings(cells) * _rays(cells)
-    films = _nothing(product.size, count)._replace(lubrication_number=wanted)
+    films = _nothing(product.size, cells_on_grid(cells))._replace(lubrication_number=wanted)
+    hysteresis = np.full(product.size, np.nan)
     fainter = wanted / number  # 1 but for the weakest flows, of which everything is linear in λ
     for rows, grid, film, pressure in point_sweeps(
         number,
@@ -168,7 +194,9 @@ def lubricated_point_films(
         end=end,
         cells=cells,
         endless=inlet_length is None,
+        respond=respond,
     ):
+        hysteresis[rows] = slope / LOAD * _work(grid, pressure)
         carried = law(film)[0] + 0.0 * film
         fluid = pressure - carried
         drag = point_drag_integrals(
@@ -176,7 +204,7 @@ def lubricated_point_films(
             rheology=rheology, speed=None if speed is None else speed[rows],
         )  # fmt: skip
         faint = fainter[rows]
-        films.position[rows] = grid.radius * np.cos(grid.angle) * radius
+        films.position[rows] = (grid.radius * np.cos(grid.angle) + grid.centre) * radius
         films.lateral_position[rows] = grid.radius * np.sin(grid.angle) * radius
         films.load_weight[rows] = grid.area * radius**2
         films.separation[rows] = film * height
@@ -186,8 +214,28 @@ def lubricated_point_films(
         films.pressure_flow[rows] = faint * 3 * slope / (4 * np.pi) * drag.pressure_flow
         films.asperity_load_fraction[rows] = 1 - faint * (1 - carried @ grid.area / LOAD)
         films.minimum_film[rows] = film.min(axis=1) * height
-        films.central_film[rows] = film[:, : grid.rays].mean(axis=1) * height
-    return films
+        films.central_film[rows] = _at_middle(grid, film) * height
+    return films, hysteresis
+
+
+def _at_middle(grid: PointGrid, film: FloatArray) -> FloatArray:
+    """H under the middle of the ball, shape ``(K,)``: the innermost ring, or the ray towards it if it is elsewhere."""
+    middle = film[:, : grid.rays].mean(axis=1)
+    if grid.centre == 0:
+        return np.asarray(middle)
+    ray = grid.rays - 1 if grid.centre > 0 else 0
+    places = np.concatenate([[0.0], grid.radius[ray :: grid.rays]])
+    found = [
+        np.interp(abs(grid.centre), places, [start, *row])
+        for start, row in zip(middle, film[:, ray :: grid.rays], strict=True)
+    ]
+    return np.array(found)
+
+
+def _work(grid: PointGrid, pressure: FloatArray) -> FloatArray:
+    """∫P (∂W/∂x) dA of the depth W, dimensionless, shape ``(K,)``."""
+    slope = 0.0 * pressure if grid.drag is None else pressure @ grid.drag.T
+    return np.asarray((slope * pressure) @ grid.area)
 
 
 def _nothing(rows: int, cells: int) -> LubricatedPointFilms:
@@ -211,6 +259,7 @@ def point_sweeps(
     end: float,
     cells: int,
     endless: bool = True,
+    respond: Callable[[PointGrid], PointGrid] | None = None,
 ) -> Iterator[tuple[IndexArray, PointGrid, FloatArray, FloatArray]]:
     """Rows of lubrication numbers that share a grid, the grid, and their H and P, dimensionless, shape ``(K, n)``.
 
@@ -218,6 +267,8 @@ def point_sweeps(
     """
     for rows in _by_reach(number, known) if endless else [np.flatnonzero(known)]:
         grid = grid_of(number[rows], rough, tail, end=end, cells=cells, endless=endless)
+        if respond is not None:
+            grid = respond(grid)
         solver = PointSolver(grid, law, float(number[rows].min()), endless=endless)
         states, _ = sweep(number[rows], solver, transport, (rough, *(rough + more for more in _APPROACHES)))
         missing = np.full(grid.radius.size, np.nan)
@@ -261,6 +312,11 @@ def grid_of(
     if endless and smallest > _WIDE:
         edge = max(edge, _PART_OF_WIDTH * smallest)
     return point_grid(_rings(cells), _rays(cells), edge, float(reach if endless else end))
+
+
+def cells_on_grid(cells: int) -> int:
+    """Number of cells of a grid for which so many were asked."""
+    return _rings(cells) * _rays(cells)
 
 
 def _rays(cells: int) -> int:

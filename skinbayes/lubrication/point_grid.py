@@ -31,6 +31,9 @@ class PointGrid(NamedTuple):
     width : of the faces, dimensionless, shape ``(F,)``
     width_along : width times the x component of the normal from left to right, dimensionless, shape ``(F,)``
     rim : cells of the last ring, in which the pressure is that of the far inlet, shape ``(n,)``
+    centre : x of the middle of the rings, from that of the ball, dimensionless
+    drag : slope ∂/∂x of the depth at each cell by unit pressures on a solid that has a memory, dimensionless, shape
+        ``(n, n)``; None for an elastic one, whose slope does no work
     """
 
     faces: FloatArray
@@ -45,6 +48,27 @@ class PointGrid(NamedTuple):
     width: FloatArray
     width_along: FloatArray
     rim: BoolArray
+    centre: float = 0.0
+    drag: FloatArray | None = None
+
+    @property
+    def parabola(self) -> FloatArray:
+        """Gap under the ball at the cells where nothing is deflected, dimensionless, shape ``(n,)``."""
+        along = 2 * self.radius * np.cos(self.angle) + self.centre
+        return np.asarray((np.square(self.radius) + self.centre * along) / 2)
+
+    def stretched(self, scale: float, centre: float) -> PointGrid:
+        """The same cells, so many times as large, around another place."""
+        return self._replace(
+            faces=self.faces * scale,
+            radius=self.radius * scale,
+            area=self.area * scale**2,
+            kernel=self.kernel * scale,
+            distance=self.distance * scale,
+            width=self.width * scale,
+            width_along=self.width_along * scale,
+            centre=centre,
+        )
 
 
 @lru_cache(maxsize=8)

@@ -46,7 +46,7 @@ class PointSolver:
         far = far_inlet(grid.angle) if endless else np.zeros(grid.angle.size)
         self._rim_pressure = np.where(grid.rim, far / grid.radius**3, 0.0)
         self._load_outside = 2 * np.pi / grid.rays * far[grid.rim].sum() / grid.faces[-1]
-        self._parabola = np.square(grid.radius) / 2
+        self._parabola = grid.parabola
         self._matrix = np.empty((cells + 1, cells + 1), order="F")
         # entries of a sparse matrix: diagonal, from left to right, from right to left
         self._rows = np.concatenate([np.arange(cells), grid.left, grid.right])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +15,12 @@ from skinbayes.contact.line_contact import EquivalentCylinder, cylinder_of_spher
 from skinbayes.contact.variance import twice_stress_variance
 from skinbayes.contact.viscoelastic_line_contact import modulus_in_contact
 from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
+from skinbayes.errors import InputError
 from skinbayes.lubrication.asperities import asperity_table, is_lawful, law_of_table
+from skinbayes.lubrication.contact_films import CONTACTS, LINE, POINT
 from skinbayes.lubrication.film import NODES
 from skinbayes.lubrication.flow_factors import FlowFactors
+from skinbayes.lubrication.point_film import CELLS
 from skinbayes.lubrication.stribeck import (
     LARGE_STRAIN,
     LARGEST_STRAIN,
@@ -24,7 +28,12 @@ from skinbayes.lubrication.stribeck import (
     THICKEST_FILM,
     StribeckCurve,
 )
-from skinbayes.lubrication.viscoelastic_film import viscoelastic_films
+from skinbayes.lubrication.viscoelastic_film import ViscoelasticFilms, viscoelastic_films
+from skinbayes.lubrication.viscoelastic_point_film import (
+    ViscoelasticPointFilms,
+    passage_under_ball,
+    viscoelastic_point_films,
+)
 from skinbayes.roughness.spectrum import PowerSpectrum
 
 SPHERE_OVER_CYLINDER = 27 * np.pi / 128
@@ -55,20 +64,22 @@ def viscoelastic_stribeck_curve(
     sphere_radius: float,
     spectrum: PowerSpectrum,
     skin: ViscoelasticSkin,
+    contact: str = LINE,
     frictional_shear_stress: float,
     area_correction: float = AREA_CORRECTION,
     velocity_shift_factor: float = 1.0,
     flow_factors: FlowFactors | None = None,
     nodes: int = NODES,
+    cells: int = CELLS,
     thickest_film: float = THICKEST_FILM,
     largest_strain: float = LARGEST_STRAIN,
 ) -> ViscoelasticStribeckCurve:
     """Friction coefficient of a ball on lubricated, rough, viscoelastic skin (Sect. 6.2 and Fig. 14 of the paper).
 
-    `stribeck_curve` with ``contact="line"`` and the films of `viscoelastic_films`: the cylinder of Eq. 9, not the ball. The
-    contact as a whole is that of the tissue: its modulus at v/b makes the cylinder, its memory the shape of the film. Layer and
-    tissue together, at the same frequency, make the asperities: the roughness rests in the skin, and is loaded once while it
-    passes the contact.
+    `stribeck_curve` with the films of `viscoelastic_films`, the cylinder of Eq. 9, or `viscoelastic_point_films`, the ball. The
+    contact as a whole is that of the tissue: its modulus at v/b (v/a under the ball) makes its size, its memory the shape of the
+    film. Layer and tissue together, at the same frequency, make the asperities: the roughness rests in the skin, and is loaded
+    once while it passes the contact.
 
     Parameters
     ----------
@@ -78,17 +89,24 @@ def viscoelastic_stribeck_curve(
     sphere_radius : R, m, > 0
     spectrum : power spectrum, C in m^4, one surface
     skin : one skin, moduli in Pa, thickness in m
+    contact : "line", the cylinder of Eq. 9 of the paper, or "point", the ball as it is
     frictional_shear_stress : σ_f, Pa, ≥ 0
     area_correction : γ, dimensionless, 0 < γ ≤ 1; 1 is plain Persson theory
     velocity_shift_factor : a, dimensionless, > 0; the films are those at a ηv, the tissue that at v
     flow_factors : of the flow between rough surfaces; None for trivial ones
-    nodes : number of places across the contact, dimensionless
+    nodes : number of places across a line contact, dimensionless
+    cells : number of cells of half a point contact, dimensionless
     thickest_film : 3π ηv/f_N, dimensionless, beyond which nothing is predicted
     largest_strain : b/Rc, dimensionless, beyond which nothing is predicted
 
     Returns
     -------
-    curve : `ViscoelasticStribeckCurve`, nan where the theory is not valid, with the reason
+    curve : `ViscoelasticStribeckCurve`, nan where the theory is not valid, with the reason; b and f_N are those of the cylinder
+
+    Raises
+    ------
+    InputError
+        if there is no such contact
 
     Notes
     -----
@@ -114,6 +132,8 @@ def viscoelastic_stribeck_curve(
     >>> print(curve.friction_coefficient.round(3), curve.hysteresis.round(3))
     [1.452 0.155 0.122] [0.032 0.03  0.002]
     """
+    if contact not in CONTACTS:
+        raise InputError(f"contact is {contact!r:.60}, but must be {' or '.join(map(repr, CONTACTS))}.")
     given = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (speed, viscosity)))
     shape = given[0].shape
     speeds, viscosities = (np.atleast_1d(x) for x in given)
@@ -132,7 +152,7 @@ def viscoelastic_stribeck_curve(
     known = (speeds >= 0) & (speeds < np.inf) & (viscosities >= 0) & (viscosities < np.inf)
     for value in np.unique(speeds[known]).tolist() if physical else ():
         rows = known & (speeds == value)
-        cylinder, strain, frequency = _contact(value, normal_force, sphere_radius, skin)
+        cylinder, strain, frequency = _contact(value, normal_force, sphere_radius, skin, contact)
         held = skin.at_frequency(frequency)
         table = asperity_table(spectrum, held, area_correction=area_correction)
         parts["strain"][rows] = strain
@@ -144,22 +164,36 @@ def viscoelastic_stribeck_curve(
         solved = rows & ~beyond & ~wide
         if not solved.any():
             continue
-        films = viscoelastic_films(
-            speeds[solved],
-            shifted[solved],
-            load_per_length=float(cylinder.load_per_length),
-            cylinder_radius=float(cylinder.cylinder_radius),
-            material=skin.bulk,
-            asperities=law_of_table(*table),
-            flow_factors=flow_factors,
-            nodes=nodes,
-        )
+        film: dict[str, Any] = {"asperities": law_of_table(*table), "flow_factors": flow_factors}
+        total = normal_force
+        films: ViscoelasticFilms | ViscoelasticPointFilms
+        if contact == POINT:
+            films = viscoelastic_point_films(
+                speeds[solved],
+                shifted[solved],
+                normal_force=normal_force,
+                sphere_radius=sphere_radius,
+                material=skin.bulk,
+                cells=cells,
+                **film,
+            )
+        else:
+            total = float(cylinder.load_per_length)
+            films = viscoelastic_films(
+                speeds[solved],
+                shifted[solved],
+                load_per_length=total,
+                cylinder_radius=float(cylinder.cylinder_radius),
+                material=skin.bulk,
+                nodes=nodes,
+                **film,
+            )
         area = relative_contact_area(
             films.asperity_pressure, twice_stress_variance(spectrum, held), area_correction=area_correction
         )
-        touching = (area * films.load_weight).sum(axis=-1) / cylinder.load_per_length
+        touching = (area * films.load_weight).sum(axis=-1) / total
         parts["boundary"][solved] = frictional_shear_stress * touching
-        parts["hysteresis"][solved] = SPHERE_OVER_CYLINDER * films.hysteresis
+        parts["hysteresis"][solved] = films.hysteresis * (1 if contact == POINT else SPHERE_OVER_CYLINDER)
         for name in ("couette", "pressure_flow", "asperity_load_fraction", "minimum_film", "central_film"):
             parts[name][solved] = getattr(films, name)
     total = parts["boundary"] + parts["couette"] + parts["pressure_flow"] + parts["hysteresis"]
@@ -184,13 +218,13 @@ def skin_at_speed(
     speed: float, *, normal_force: float, sphere_radius: float, skin: ViscoelasticSkin
 ) -> LayeredSkin:
     """Elastic skin of the moduli that a ball meets at v, m/s; moduli in Pa."""
-    return skin.at_frequency(_contact(speed, normal_force, sphere_radius, skin)[2])
+    return skin.at_frequency(_contact(speed, normal_force, sphere_radius, skin, LINE)[2])
 
 
 def _contact(
-    speed: float, force: float, radius: float, skin: ViscoelasticSkin
+    speed: float, force: float, radius: float, skin: ViscoelasticSkin, contact: str
 ) -> tuple[EquivalentCylinder, float, float]:
-    """Cylinder of Eq. 9, its b/Rc and v/b (1/s), with the modulus of the tissue at that frequency."""
+    """Cylinder of Eq. 9, its b/Rc and v/b or v/a (1/s), with the modulus of the tissue at that frequency."""
 
     def cylinder_on(modulus: float) -> EquivalentCylinder:
         return cylinder_of_sphere(force, radius, reduced_modulus=modulus)
@@ -198,6 +232,14 @@ def _contact(
     def half_width_of(modulus: float) -> float:
         return float(line_contact(*cylinder_on(modulus), reduced_modulus=modulus).half_width)
 
+    if contact == POINT:
+        ball = passage_under_ball(skin.bulk, speed, normal_force=force, sphere_radius=radius)
+        cylinder = cylinder_on(ball.modulus)
+        return (
+            cylinder,
+            half_width_of(ball.modulus) / float(cylinder.cylinder_radius),
+            speed / ball.half_width,
+        )
     modulus, half_width = modulus_in_contact(skin.bulk, speed, half_width_of)
     cylinder = cylinder_on(modulus)
     return cylinder, half_width / float(cylinder.cylinder_radius), speed / half_width
