@@ -1,6 +1,7 @@
 """Contact mechanics of skin and other solids: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
+from skinbayes.contact.ball_on_skin import modulus_under_ball
 from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
 from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area, total_contact_area
@@ -100,6 +101,7 @@ __all__ = [
     "loss_fraction_of_relaxation",
     "material_of_dynamic_moduli",
     "mean_separation",
+    "modulus_under_ball",
     "persson_contact_area",
     "pressure_at_separation",
     "reduced_modulus",

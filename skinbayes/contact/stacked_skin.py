@@ -76,6 +76,14 @@ class StackedSkin:
         # exp(i step) = 1 + i step, of which the modulus has got its part and q not yet
         return np.asarray(compliance.real), np.asarray(compliance.real - compliance.imag / _STEP)
 
+    def layer_by_layer(self) -> tuple[list[FloatArray], list[FloatArray], list[FloatArray]]:
+        """Moduli, Pa, Poisson ratios and thicknesses, m, from the surface down, each of batch shape, nan if impossible."""
+        moduli, ratios, thick = (
+            [part[..., i] for i in range(part.shape[-1])]
+            for part in (self._young, self._poisson, np.asarray(self.thicknesses))
+        )
+        return moduli, ratios, thick
+
     @property
     def _young(self) -> FloatArray:
         """Young's moduli, nan in a stack that cannot be."""

@@ -14,6 +14,7 @@ from skinbayes.contact import (
     LayeredSkin,
     StackedSkin,
     elastoplastic_contact_area,
+    modulus_under_ball,
     twice_stress_variance,
     validate_solid,
 )
@@ -137,13 +138,21 @@ def one_layer_skin_of(inputs: Inputs) -> LayeredSkin | HomogeneousSolid:
 def nominal_pressure_of(inputs: Inputs) -> FloatArray:
     """Return p0 [Pa]: as given, load over nominal area, or the mean Hertz pressure of a sphere on the solid.
 
-    On skin the Hertz pressure uses the modulus of the tissue below the layer: the layer is far thinner than the contact is wide.
+    On skin of one layer the Hertz pressure uses the modulus of the tissue below: the layer is far thinner than the contact is
+    wide. Of more layers the contact of the ball on all of them is computed.
     """
     if "nominal_pressure" in inputs:
         return np.asarray(inputs["nominal_pressure"], dtype=float)
     if "nominal_contact_area" in inputs:
         return np.asarray(inputs["normal_force"] / inputs["nominal_contact_area"], dtype=float)
-    return mean_pressure(inputs["normal_force"], inputs["sphere_radius"], skin_of(inputs).contact_modulus)
+    return mean_pressure(inputs["normal_force"], inputs["sphere_radius"], modulus_under_ball_of(inputs))
+
+
+def modulus_under_ball_of(inputs: Inputs) -> FloatArray:
+    """Return the plane-strain modulus [Pa] that gives the contact of the ball of ``inputs`` on their solid, Hertz."""
+    return modulus_under_ball(
+        skin_of(inputs), normal_force=inputs["normal_force"], sphere_radius=inputs["sphere_radius"]
+    )
 
 
 def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

@@ -11,8 +11,8 @@ from skinbayes.contact import sphere_contact
 from skinbayes.forward.base import Inputs, Tables
 from skinbayes.forward.contact_inputs import (
     PRESSURE_AND_SLOPE,
+    modulus_under_ball_of,
     nominal_pressure_of,
-    skin_of,
     spectrum_of,
     validate_contact,
 )
@@ -36,7 +36,7 @@ def contact_width(inputs: Inputs) -> FloatArray:
         return np.full(pressure.shape, np.inf)
     if "nominal_contact_area" in inputs:
         return np.asarray(2 * np.sqrt(inputs["nominal_contact_area"] / np.pi) + 0 * pressure)
-    modulus = skin_of(inputs).contact_modulus
+    modulus = modulus_under_ball_of(inputs)
     return np.asarray(
         2
         * sphere_contact(

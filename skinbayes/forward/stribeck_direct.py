@@ -10,7 +10,7 @@ import numpy as np
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import cylinder_of_sphere
 from skinbayes.forward.base import Inputs, Tables
-from skinbayes.forward.contact_inputs import skin_of, spectrum_of
+from skinbayes.forward.contact_inputs import modulus_under_ball_of, skin_of, spectrum_of
 from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.pad import PAD, with_ball
 from skinbayes.lubrication import (
@@ -171,7 +171,7 @@ def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
     if "inlet_length" in inputs:
         nowhere = np.zeros(np.shape(products), dtype=bool)
         return {"film_near_inlet": nowhere, "film_beyond_inlet": nowhere}
-    modulus = skin_of(inputs).contact_modulus
+    modulus = modulus_under_ball_of(inputs)
     cylinder = cylinder_of_sphere(inputs["normal_force"], inputs["sphere_radius"], reduced_modulus=modulus)
     with np.errstate(invalid="ignore"):
         fraction = (

@@ -190,6 +190,11 @@ def prepare(
     """
     names = model.input_names()
     check_one_inlet(ranges)
+    if "young_modulus_dermis" in ranges or "young_modulus_fat" in ranges:
+        return replace(
+            model,
+            accuracy="Each curve is solved by itself, which is slow: tables of films hold skin of one layer.",
+        )
     varying = [
         name
         for name, (low, high) in ranges.items()

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from skinbayes.arrays import ArrayLike, BoolArray, FloatArray
+from skinbayes.contact.ball_on_skin import modulus_under_ball
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.solid import ElasticSolid
 from skinbayes.errors import InputError
@@ -120,7 +121,7 @@ def stribeck_curve_of_liquid(
             f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number >= 0 m/s."
         )
     liquids = liquid_rows([flow_curve]).at(np.zeros(speed.size, dtype=np.intp))
-    modulus = float(skin.contact_modulus)
+    modulus = float(modulus_under_ball(skin, normal_force=normal_force, sphere_radius=sphere_radius))
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     law = law_of_table(*table) if is_lawful(*table) else None
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, BoolArray, FloatArray
 from skinbayes.contact.area import relative_contact_area
+from skinbayes.contact.ball_on_skin import modulus_under_ball
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.line_contact import cylinder_of_sphere, line_contact
 from skinbayes.contact.solid import ElasticSolid
@@ -187,7 +188,7 @@ def stribeck_curve(
     given = np.asarray(speed_viscosity_product, dtype=np.float64)
     products = np.atleast_1d(given)
     twice_variance = twice_stress_variance(spectrum, skin)
-    modulus = skin.contact_modulus
+    modulus = modulus_under_ball(skin, normal_force=normal_force, sphere_radius=sphere_radius)
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     case = (normal_force, sphere_radius, frictional_shear_stress, area_correction, velocity_shift_factor,
             twice_variance, modulus)  # fmt: skip

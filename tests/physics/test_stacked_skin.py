@@ -12,6 +12,7 @@ from skinbayes.contact import (
     StackedSkin,
     effective_modulus,
     mean_separation,
+    modulus_under_ball,
     surface_response,
     twice_stress_variance,
     validate_solid,
@@ -127,3 +128,20 @@ def test_batches_and_what_cannot_be():
         validate_solid(StackedSkin(young_moduli=[7e6, 80e3, 15e3], thicknesses=[20e-6, 0.0]))
     with pytest.raises(InputError, match="young_moduli is -1 Pa"):
         validate_solid(batch)
+
+
+def test_what_a_ball_meets():
+    """The stratum corneum is left out; equal layers are one; a thick layer is all there is."""
+    ball = {"normal_force": np.array([0.05, 0.2]), "sphere_radius": 8e-3}
+    one = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
+    assert modulus_under_ball(one, **ball) == one.contact_modulus
+    same = StackedSkin(young_moduli=[7e6, 20e3, 20e3], thicknesses=[20e-6, 1e-3])
+    assert modulus_under_ball(same, **ball) == pytest.approx(20e3 / 0.75, rel=1e-8)
+    thick = StackedSkin(young_moduli=[7e6, 50e3, 20e3], thicknesses=[20e-6, 10.0])
+    assert modulus_under_ball(thick, **ball) == pytest.approx(50e3 / 0.75, rel=1e-3)
+    thin = StackedSkin(young_moduli=[7e6, 50e3, 20e3], thicknesses=[20e-6, 1e-3])
+    found = modulus_under_ball(thin, **ball)
+    assert (20e3 / 0.75 < found).all() and (found < 50e3 / 0.75).all() and found[0] > found[1]
+    batch = StackedSkin(young_moduli=[[7e6, 50e3, 20e3], [7e6, -1.0, 20e3]], thicknesses=[20e-6, 1e-3])
+    both = modulus_under_ball(batch, normal_force=0.05, sphere_radius=8e-3)
+    assert both[0] == found[0] and np.isnan(both[1])
