@@ -33,7 +33,9 @@ def with_innovations(problem: StatisticalModel | JointModel, usual: VectorTransf
     transforms = list(usual.transforms)
     for i in (i for memory in memories for i in memory.scales):
         transforms[i] = LOGARITHM  # a bounded scale gets walls: its logit would bend the ridge
-    return InnovationTransform(tuple(transforms), replace(usual, transforms=tuple(transforms)), tuple(memories))
+    return InnovationTransform(
+        tuple(transforms), replace(usual, transforms=tuple(transforms)), tuple(memories)
+    )
 
 
 def _memory(part: StatisticalModel, place: list[int]) -> Innovations | None:

@@ -29,7 +29,7 @@ from skinbayes.vocabulary import (
     suggestions,
 )
 
-MOST_ROWS = 20_000
+MOST_ROWS = 10_000
 """Rows that a problem may have: so many were run, in less than a gigabyte (benchmarks/rows.py)."""
 
 MOST_ROWS_OF_EXPENSIVE_MODELS = 1_000

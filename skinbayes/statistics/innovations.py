@@ -52,6 +52,9 @@ class Innovations:
         return np.asarray(0.5 * np.log(-np.expm1(2.0 * log_memory)))
 
 
+_NOTHING = VectorTransform(())
+
+
 @dataclass(frozen=True)
 class InnovationTransform(VectorTransform):
     """Other coordinates, with innovations in place of scales of noise. Frozen, picklable.
@@ -62,7 +65,7 @@ class InnovationTransform(VectorTransform):
     memories : no coordinate belongs to two of them
     """
 
-    usual: VectorTransform = VectorTransform(())
+    usual: VectorTransform = _NOTHING
     memories: tuple[Innovations, ...] = ()
 
     def forward(self, x: FloatArray) -> FloatArray:

@@ -9,7 +9,6 @@ from scipy.special import logsumexp
 
 from skinbayes.arrays import FloatArray
 
-
 SMALL = 1e-280
 """Ratios that are so small beside the largest, one over which overflows, do not change the shape: it is enormous all the same."""
 

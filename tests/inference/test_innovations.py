@@ -85,4 +85,4 @@ def test_impossible_scales_are_impossible() -> None:
     target = problem.target()
     place = target.transform.forward(np.array([[1.0, 0.4, 5.0]]))
     assert np.isfinite(target.log_density(place))
-    assert target.log_density(place + [[0.0, 1.0, 0.0]]) == -np.inf
+    assert target.log_density(place + np.array([0.0, 1.0, 0.0])) == -np.inf
