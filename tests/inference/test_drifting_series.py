@@ -52,4 +52,4 @@ def test_independent_noise_is_sure_of_a_wrong_value_and_the_page_says_why() -> N
     low, _ = fit.quantiles("typical_friction_coefficient", (0.05, 0.95))
     assert low > 1.2 * TRUTH
     said = " ".join(trend_sentences(fit))
-    assert "as this model cannot" in said and "[noise.correlation]" in said
+    assert "follow each other" in said and "[noise.correlation]" in said
