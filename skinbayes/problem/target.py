@@ -63,8 +63,9 @@ class PosteriorTarget:
     def fingerprint(self) -> str:
         """Digest of model, data, priors and version, and of coordinates that are not the usual ones."""
         supports = [p.prior.support for p in self.problem.free if p.prior]
-        walls = "" if self.transform == VectorTransform.for_supports(supports) else "-walls"
-        return self.problem.fingerprint + walls + ("" if self.use_likelihood else "-prior")
+        walls = "" if self._without_memory == VectorTransform.for_supports(supports) else "-walls"
+        memory = "-innovations" if isinstance(self.transform, InnovationTransform) else ""
+        return self.problem.fingerprint + walls + memory + ("" if self.use_likelihood else "-prior")
 
     @cached_property
     def transform(self) -> VectorTransform:
