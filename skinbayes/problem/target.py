@@ -72,7 +72,7 @@ class PosteriorTarget:
         """Map between parameters in SI and the real space; the density is zero where it leads out of their support."""
         return with_innovations(self.problem, self._without_memory)
 
-    @property
+    @cached_property
     def _without_memory(self) -> VectorTransform:
         """The coordinates if noise had no memory."""
         supports = [p.prior.support for p in self.problem.free if p.prior]

@@ -39,7 +39,7 @@ class Innovations:
         independent = (self.independent,) if isinstance(self.independent, int) else ()
         return frozenset((*self.scales, self.length, *independent))
 
-    def log_share(self, length: FloatArray, independent: FloatArray | float) -> FloatArray:
+    def log_share(self, length: FloatArray | float, independent: FloatArray | float) -> FloatArray:
         """ln of the innovations over the scale, ½ ln(1 − ρ²), for lengths and independent fractions ``(B,)``.
 
         Examples
