@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, isfinite
+from math import isfinite
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from skinbayes.errors import InputError
 from skinbayes.problem.failures import impossible
 from skinbayes.problem.funnels import straightened
 from skinbayes.problem.joint_densities import JointModel
+from skinbayes.problem.memory import LOGARITHM, with_innovations
 from skinbayes.problem.statistical_model import StatisticalModel
-from skinbayes.statistics.annealing import anneal, effective_number, largest_power
+from skinbayes.statistics.annealing import SWEEPS, anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
+from skinbayes.statistics.innovations import InnovationTransform
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 
 CANDIDATES_PER_START = 20
@@ -27,8 +29,9 @@ FOUND = 2.0
 DISPERSION = 0.25
 """Power of the likelihood at which starts led towards the posterior are left: twice as wide as it."""
 
-
-LOGARITHM = Transform("log", 0.0, inf)
+SWEEPS_WITH_MEMORY, DISPERSION_WITH_MEMORY = 20, 0.5
+"""Moves on the way there at each power, and that at which starts are left, where noise has a memory. With as few moves as
+otherwise the starts of a drying series lay 200 below the posterior, all alike, and ensembles took a hundred steps to spread."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +63,18 @@ class PosteriorTarget:
     def fingerprint(self) -> str:
         """Digest of model, data, priors and version, and of coordinates that are not the usual ones."""
         supports = [p.prior.support for p in self.problem.free if p.prior]
-        walls = "" if self.transform == VectorTransform.for_supports(supports) else "-walls"
-        return self.problem.fingerprint + walls + ("" if self.use_likelihood else "-prior")
+        walls = "" if self._without_memory == VectorTransform.for_supports(supports) else "-walls"
+        memory = "-innovations" if isinstance(self.transform, InnovationTransform) else ""
+        return self.problem.fingerprint + walls + memory + ("" if self.use_likelihood else "-prior")
 
     @cached_property
     def transform(self) -> VectorTransform:
         """Map between parameters in SI and the real space; the density is zero where it leads out of their support."""
+        return with_innovations(self.problem, self._without_memory)
+
+    @cached_property
+    def _without_memory(self) -> VectorTransform:
+        """The coordinates if noise had no memory."""
         supports = [p.prior.support for p in self.problem.free if p.prior]
         if all(part.groups is None for part, _ in self.problem.parts.values()):
             return VectorTransform.for_supports(supports)
@@ -148,8 +157,11 @@ class PosteriorTarget:
         if effective_number(weight) > FOUND:
             return position[chosen]
         only_prior = replace(self, use_likelihood=False).log_density
+        final, sweeps = DISPERSION, SWEEPS
+        if isinstance(self.transform, InnovationTransform):
+            final, sweeps = DISPERSION_WITH_MEMORY, SWEEPS_WITH_MEMORY
         return anneal(
-            position[chosen], weight[chosen], beta, DISPERSION, only_prior, self.log_likelihood, rng
+            position[chosen], weight[chosen], beta, final, only_prior, self.log_likelihood, rng, sweeps
         )
 
 

@@ -13,7 +13,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.statistics.densities import BatchFunction
 
 SWEEPS, LAST_SWEEPS = 4, 12
-"""Moves of all members after each rise of the power, and after the last."""
+"""Moves of all members after each rise of the power, unless told otherwise, and after the last."""
 
 _FRACTION = 0.4  # of the members that the weights of a rise leave effective
 _JITTER = 1e-4  # of the spread of the population, so that members chosen twice part
@@ -67,6 +67,7 @@ def anneal(
     prior: BatchFunction,
     likelihood: BatchFunction,
     rng: np.random.Generator,
+    sweeps: int = SWEEPS,
 ) -> FloatArray:
     """Lead a population distributed as ``prior · L^power`` to ``prior · L^final``.
 
@@ -81,6 +82,7 @@ def anneal(
     final : where it shall go, not less
     prior, likelihood : logarithms, ``(B, D)`` to ``(B,)``; anything that is not a number, or infinite, is impossible
     rng : source of all randomness
+    sweeps : moves of all members after each rise of the power; after the last :data:`LAST_SWEEPS`, if these are more
 
     Returns
     -------
@@ -98,7 +100,7 @@ def anneal(
         chosen = np.minimum(np.searchsorted(np.cumsum(weight) / weight.sum(), ladder), count - 1)
         chosen = rng.permutation(chosen)  # the halves below must not be neighbours
         power, position, value, density = following, position[chosen], value[chosen], density[chosen]
-        for _ in range(SWEEPS if power < final else LAST_SWEEPS):
+        for _ in range(sweeps if power < final else max(sweeps, LAST_SWEEPS)):
             for half, others in _halves(count):
                 step = _difference(position[others], half.size, rng)
                 proposal = position[half] + 2.38 / np.sqrt(2 * dimension) * step

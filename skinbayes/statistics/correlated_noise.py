@@ -82,6 +82,11 @@ class CorrelatedNoise:
         """First of the sorted rows of each different value of the column."""
         return np.flatnonzero(np.diff(self.state, prepend=-1))
 
+    @cached_property
+    def counts(self) -> NDArray[np.intp]:
+        """Rows of each different value of the column, shape ``(S,)``."""
+        return np.bincount(self.state)
+
     @property
     def n_series(self) -> int:
         """Number of series."""
@@ -159,7 +164,7 @@ class _Memory:
         """ln det C, shape ``(B,)``."""
         if not self.noise.independent:
             return self.log_innovations
-        pivots = np.stack([np.asarray(dpttrf(*matrix)[0]) for matrix in self._posterior_precisions()])
+        pivots = np.stack([factored[0] for factored in self._factored])
         count = len(self.noise.order)
         return np.asarray(self.log_innovations + np.log(pivots).sum(axis=-1) + count * np.log(self.fraction))
 
@@ -213,11 +218,16 @@ class _Memory:
         diagonal[:, :-1] += self.memory[:, 1:] * coupling
         return diagonal, -coupling
 
+    @cached_property
+    def _factored(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Pivots and factors of these matrices."""
+        return [dpttrf(*matrix)[:2] for matrix in self._posterior_precisions()]
+
     def _posterior_precisions(self) -> list[tuple[FloatArray, FloatArray]]:
         """The same of the process given values of the rows, for each of the batch."""
         diagonal, coupling = self._precision()
         share = (1.0 - self.fraction) / self.fraction
-        diagonal = diagonal + share[:, np.newaxis] * np.bincount(self.noise.state)
+        diagonal = diagonal + share[:, np.newaxis] * self.noise.counts
         return list(zip(diagonal, coupling, strict=True))
 
     def _split(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -227,8 +237,7 @@ class _Memory:
         sums = np.add.reduceat(values, self.noise.starts, axis=-1) if repeated else values
         sums = sums * (root / self.fraction[:, np.newaxis, np.newaxis])
         process = np.empty_like(sums)
-        for i, (diagonal, coupling) in enumerate(self._posterior_precisions()):
-            pivots, factors, _ = dpttrf(diagonal, coupling)
+        for i, (pivots, factors) in enumerate(self._factored):
             process[i] = dpttrs(pivots, factors, sums[i].T)[0].T
         return values - root * (np.take(process, state, axis=-1) if repeated else process), process
 

@@ -9,6 +9,9 @@ from scipy.special import logsumexp
 
 from skinbayes.arrays import FloatArray
 
+SMALL = 1e-280
+"""Ratios that are so small beside the largest, one over which overflows, do not change the shape: it is enormous all the same."""
+
 
 class LeftOutDensity(NamedTuple):
     """ln p(data | all other data) from weights.
@@ -89,7 +92,9 @@ def pareto_shape(ratios: FloatArray) -> float:
     >>> round(pareto_shape(rng.uniform(size=10_000) ** -0.3), 1)
     0.3
     """
-    return _tail(np.asarray(ratios, dtype=np.float64))[1]
+    values = np.asarray(ratios, dtype=np.float64)
+    largest = values.max(initial=0.0)
+    return _tail(values / largest if 0.0 < largest < SMALL else values)[1]
 
 
 def smoothed(log_weights: FloatArray) -> tuple[FloatArray, float]:
@@ -109,9 +114,12 @@ def smoothed(log_weights: FloatArray) -> tuple[FloatArray, float]:
     if not np.isfinite(shape):
         return log_weights, shape
     quantiles = (np.arange(places.size) + 0.5) / places.size
-    excess = (
-        sigma * np.expm1(-shape * np.log1p(-quantiles)) / shape if shape else -sigma * np.log1p(-quantiles)
-    )
+    with np.errstate(over="ignore"):  # none is taken for larger than the largest there was
+        excess = (
+            sigma * np.expm1(-shape * np.log1p(-quantiles)) / shape
+            if shape
+            else -sigma * np.log1p(-quantiles)
+        )
     result = log_weights.copy()
     result[places] = np.minimum(np.log(cut + excess), 0.0) + top
     return result, shape
@@ -133,7 +141,7 @@ def _tail(ratios: FloatArray) -> tuple[tuple[np.ndarray, float, float], float]:
     if (excess > 0).sum() < 5:
         return nothing, np.inf
     # the profile likelihood over a grid of slopes, see the source
-    quarter = excess[int(size / 4 + 0.5) - 1] or excess[excess > 0][0]
+    quarter = max(excess[int(size / 4 + 0.5) - 1] or excess[excess > 0][0], SMALL * excess[-1])
     steps = 30 + int(np.sqrt(size))
     slopes = 1 / excess[-1] + (1 - np.sqrt(steps / (np.arange(1, steps + 1) - 0.5))) / (3 * quarter)
     shapes = np.log1p(-slopes[:, np.newaxis] * excess).mean(axis=1)

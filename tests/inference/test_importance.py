@@ -19,7 +19,7 @@ from skinbayes.sampling.importance import Refusal, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.store import SampleStore
 from skinbayes.sampling.weighted_draws import ImportanceDraws
-from skinbayes.statistics.pareto import smoothed
+from skinbayes.statistics.pareto import pareto_shape, smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
 
 LEVELS = np.array([0.05, 0.5, 0.95])
@@ -105,6 +105,18 @@ def test_smoothed_weights_are_those_of_arviz():
         found, own = smoothed(ratios)
         assert own == pytest.approx(float(k), rel=1e-9)
         np.testing.assert_allclose(found - np.logaddexp.reduce(found), np.asarray(expected), atol=1e-9)
+
+
+def test_weights_hundreds_of_powers_of_ten_apart_have_an_enormous_shape_in_silence():
+    """Their ratios vanish beside the largest, one over them is infinite: warnings are errors here."""
+    for spread in (100.0, 300.0, 700.0, 3000.0):
+        for seed in range(10):
+            log_weights = spread * np.random.default_rng(seed).normal(size=400)
+            weights, shape = smoothed(log_weights)
+            assert shape > 10 and pareto_shape(np.exp(log_weights - log_weights.max())) == shape
+            assert np.isfinite(weights).all() and weights.max() <= log_weights.max()
+    ratios = np.random.default_rng(1).uniform(size=10_000) ** -0.3
+    assert pareto_shape(1e-300 * ratios) == pytest.approx(pareto_shape(ratios), abs=1e-3)
 
 
 def test_density_and_draws_of_a_mixture_belong_together():
