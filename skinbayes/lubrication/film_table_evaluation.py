@@ -225,7 +225,8 @@ def _tabulated(
         whole_rows = [np.broadcast_to(x, shape) for x in others]
         memory = [np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)) for x in memory]
         held = table.coefficients.shape[-1] * (max(rows, 1) if any(x.shape[1] > 1 for x in logs) else 1)
-        step = max(1, min(_POINTS // max(rows, 1), _COEFFICIENTS // held))
+        pieces = _COEFFICIENTS // (1 if tissue is None else 4)  # a correction is as large again, and smooth films are beside it
+        step = max(1, min(_POINTS // max(rows, 1), pieces // held))
         parts = [
             _part(
                 table,
@@ -253,7 +254,7 @@ def _part(
     if balls.tissue is None:
         films = contract(table, logs, 6 if balls.everything else 4)
     else:
-        films = contract_remembering(table, balls.tissue.correction, logs, memory)
+        films = contract_remembering(table, balls.tissue, logs, memory)
     log_speed = np.maximum(np.log(speed), _STILL)
     log_shift = np.where(shift > 0, np.log(shift), np.nan)
     if liquids is None:

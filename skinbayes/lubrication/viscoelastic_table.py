@@ -44,7 +44,7 @@ from skinbayes.lubrication.viscoelastic_correction import (
 from skinbayes.lubrication.viscoelastic_memory import STANDARD_LINEAR_SOLID, passage_in_contact
 from skinbayes.lubrication.viscoelastic_stribeck import SPHERE_OVER_CYLINDER
 
-VERSION = 1
+VERSION = 2
 """Of what the numbers in a correction mean; those of another version are built anew."""
 
 _EVERY = 2  # of the speeds of the table at which the correction is solved

@@ -211,7 +211,9 @@ def test_friction_from_the_table_is_that_of_the_solver(tables) -> None:  # type:
             ),
         )
         for name in ("friction_coefficient", "hysteresis", "central_film", "minimum_film", "couette"):
-            assert_allclose(getattr(found, name), getattr(direct, name), rtol=0.01, err_msg=name)
+            # few nodes; of the hysteresis, which is a small part, a little less is asked
+            tolerance = 0.02 if name == "hysteresis" else 0.01
+            assert_allclose(getattr(found, name), getattr(direct, name), rtol=tolerance, err_msg=name)
         assert_allclose(found.boundary, direct.boundary, atol=0.01 * direct.friction_coefficient.max())
 
 
