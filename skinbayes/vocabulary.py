@@ -32,17 +32,33 @@ _ALL = (
     Quantity(
         "yield_stress", "σ_Y", "Pa", "penetration hardness; inf is purely elastic", infinite_allowed=True
     ),
-    _closed("relaxation_strength_bulk", "Δ1", "1", "instantaneous over relaxed modulus of the tissue, less 1"),
-    _closed("relaxation_strength_layer", "Δ0", "1", "instantaneous over relaxed modulus of the layer, less 1"),
+    _closed(
+        "relaxation_strength_bulk", "Δ1", "1", "instantaneous over relaxed modulus of the tissue, less 1"
+    ),
+    _closed(
+        "relaxation_strength_layer", "Δ0", "1", "instantaneous over relaxed modulus of the layer, less 1"
+    ),
     Quantity("relaxation_time_bulk", "τ1", "s", "relaxation time of the tissue at constant strain"),
     Quantity("relaxation_time_layer", "τ0", "s", "relaxation time of the layer at constant strain"),
     Quantity(
-        "loss_tangent_bulk", "tan δ1", "1", "tan δ of the tissue, the same at all frequencies", 0.0, 1.0,
-        lower_open=False, upper_open=True,
+        "loss_tangent_bulk",
+        "tan δ1",
+        "1",
+        "tan δ of the tissue, the same at all frequencies",
+        0.0,
+        1.0,
+        lower_open=False,
+        upper_open=True,
     ),
     Quantity(
-        "loss_tangent_layer", "tan δ0", "1", "tan δ of the layer, the same at all frequencies", 0.0, 1.0,
-        lower_open=False, upper_open=True,
+        "loss_tangent_layer",
+        "tan δ0",
+        "1",
+        "tan δ of the layer, the same at all frequencies",
+        0.0,
+        1.0,
+        lower_open=False,
+        upper_open=True,
     ),
     Quantity("reference_angular_frequency", "ω_r", "1/s", "at which moduli of constant tan δ are given"),
     # roughness
@@ -88,7 +104,10 @@ _ALL = (
     _closed("indentation_force", "F_δ", "N", "force that presses a ball to the indentation depth"),
     Quantity("indentation_rate", "dδ/dt", "m/s", "speed at which a ball is pressed in, and drawn back"),
     _closed(
-        "indentation_loss_fraction", "W_loss/W", "1", "work lost in pressing in and drawing back over that of pressing in",
+        "indentation_loss_fraction",
+        "W_loss/W",
+        "1",
+        "work lost in pressing in and drawing back over that of pressing in",
         1.0,
     ),
     Quantity("viscosity", "η", "Pa s", "dynamic viscosity"),

@@ -48,7 +48,9 @@ class ConstantLossMaterial:
     def power(self) -> FloatArray:
         """n, dimensionless, batch shape."""
         tangent = np.asarray(self.tan_delta)
-        return np.asarray(np.where((tangent >= 0) & (tangent < 1), 2 / np.pi * np.arctan(tangent), np.nan))[()]
+        return np.asarray(np.where((tangent >= 0) & (tangent < 1), 2 / np.pi * np.arctan(tangent), np.nan))[
+            ()
+        ]
 
     def complex_modulus(self, angular_frequency: ArrayLike) -> ComplexArray:
         """Storage modulus E′ and loss modulus E″ as E′ + iE″.

@@ -108,7 +108,10 @@ def _per_sine() -> FloatArray:
     for i, strength in enumerate(np.expm1(fast).tolist()):
         for j, ratio in enumerate(np.exp(places - fast[i] / 2).tolist()):
             cycle = indentation_cycle(
-                1.0, 1.0, sphere_radius=1.0, material=standard_linear_solid(1.0, 1 + strength, relaxation_time=ratio)
+                1.0,
+                1.0,
+                sphere_radius=1.0,
+                material=standard_linear_solid(1.0, 1 + strength, relaxation_time=ratio),
             )
             found[i, j] = np.log(cycle.loss_fraction / _sine(np.asarray(strength), np.asarray(ratio)))
     return grid_coefficients(found, ends=False)

@@ -105,7 +105,9 @@ def indentation_cycle(
     end = _halved(lambda time: balance(np.zeros(1), time), np.array([turn]), np.array([2 * turn])).item()
     # the contact shrinks ever faster: points by the fall of its depth
     back = turn + (end - turn) * np.sin(np.linspace(0, np.pi / 2, _POINTS + 1))[1:]
-    grown = _halved(lambda earlier: balance(earlier, back[:-1]), np.zeros(_POINTS - 1), np.full(_POINTS - 1, turn))
+    grown = _halved(
+        lambda earlier: balance(earlier, back[:-1]), np.zeros(_POINTS - 1), np.full(_POINTS - 1, turn)
+    )
     loading = turn * np.linspace(0, 1, _POINTS + 1)
     time = np.concatenate([loading, back])
     until = np.concatenate([loading, grown, [0.0]])
@@ -196,7 +198,11 @@ def indentation_relaxation(
 
 
 def indentation_force_at_rate(
-    rate: ArrayLike, depth: ArrayLike, *, sphere_radius: ArrayLike, material: ViscoelasticMaterial | ConstantLossMaterial
+    rate: ArrayLike,
+    depth: ArrayLike,
+    *,
+    sphere_radius: ArrayLike,
+    material: ViscoelasticMaterial | ConstantLossMaterial,
 ) -> FloatArray:
     """Force on a ball that is pressed in at a constant rate when it has come to a depth, ``F = (4√R/3) ∫ E*(t − s) d(δ^(3/2))``.
 
@@ -228,7 +234,9 @@ def indentation_force_at_rate(
         time = np.broadcast_to(pressed / speed, shape).reshape(-1)
         time = np.where((time > 0) & (time < np.inf), time, np.nan)
         loaded = _loaded(material, time, time).reshape(shape)
-        stiffness = np.where(radius > 0, 4 / 3 * np.sqrt(radius), np.nan) * plane_strain(1.0, material.poisson_ratio)
+        stiffness = np.where(radius > 0, 4 / 3 * np.sqrt(radius), np.nan) * plane_strain(
+            1.0, material.poisson_ratio
+        )
         return np.asarray(stiffness * speed**1.5 * loaded)[()]
 
 
@@ -245,7 +253,9 @@ def _impulse(material: ViscoelasticMaterial | ConstantLossMaterial, time: FloatA
     """∫E dt from 0, Pa s."""
     if isinstance(material, ConstantLossMaterial):
         power, reference = float(material.power), float(material.reference_frequency)
-        return np.asarray(float(material.modulus) * reference**-power * time ** (1 - power) / gamma(2 - power))
+        return np.asarray(
+            float(material.modulus) * reference**-power * time ** (1 - power) / gamma(2 - power)
+        )
     times = np.asarray(material.relaxation_times)
     moduli = np.asarray(material.relaxing_moduli)
     relaxed = (moduli * times * -np.expm1(-time[..., None] / times)).sum(axis=-1)

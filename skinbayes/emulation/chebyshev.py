@@ -10,7 +10,6 @@ from numpy.polynomial.chebyshev import chebder, chebval, chebvander
 
 from skinbayes.arrays import FloatArray
 
-
 _NARROW = 1e-9  # half a range of rows that are all alike
 
 
@@ -137,8 +136,8 @@ def summed_locally(
 ) -> FloatArray:
     """`summed`, where the rows of a vector lie close to each other along one axis.
 
-    Between the outermost rows of each vector the series along ``axis`` is replaced by one of ``count`` terms through as many nodes:
-    rows then have fewer terms. The other arguments and the values are those of `summed`; rows must vary along ``axis``.
+    Between the outermost rows of each vector the series along ``axis`` is replaced by one of ``count`` terms through as many
+    nodes: rows then have fewer terms. The other arguments and the values are those of `summed`; rows must vary along ``axis``.
     """
     *counts, columns = parts.shape
     place = places[axis]
@@ -159,4 +158,6 @@ def summed_locally(
         weights = (weights[..., None] * polynomials(places[other], counts[other])[..., None, :]).reshape(
             vectors, place.shape[1], -1
         )
-    return np.asarray(np.matmul(np.ascontiguousarray(weights), block.reshape(vectors, weights.shape[-1], columns)))
+    return np.asarray(
+        np.matmul(np.ascontiguousarray(weights), block.reshape(vectors, weights.shape[-1], columns))
+    )

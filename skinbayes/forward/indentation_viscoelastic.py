@@ -1,4 +1,4 @@
-"""Forward model ``indentation`` of tissue that is not elastic: force on the way in, and the loss of a cycle, at a constant rate."""
+"""Forward model ``indentation`` of tissue that relaxes: force on the way in and loss of a cycle, at a constant rate."""
 
 from __future__ import annotations
 

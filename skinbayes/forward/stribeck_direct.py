@@ -112,7 +112,7 @@ def flow_factors_of(inputs: Inputs, tables: Tables, kind: str) -> FlowFactors | 
     if kind == "patir-cheng":
         return PatirCheng(float(np.squeeze(rms_height(spectrum))))
     correction = float(np.squeeze(inputs["area_correction"]))
-    return tabulatedflow_factors_of(spectrum, skin_of(inputs), area_correction=correction)
+    return tabulated_flow_factors(spectrum, skin_of(inputs), area_correction=correction)
 
 
 def limit_of(inputs: Inputs, name: str) -> float:

@@ -15,14 +15,21 @@ from skinbayes.forward.contact_inputs import spectrum_of
 from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.stribeck_direct import (
     CURVE,
-    FIELDS as ELASTIC_FIELDS,
     Theory,
     film_flags,
     flow_factors_of,
     limit_of,
     one_by_one,
 )
-from skinbayes.lubrication import LARGEST_STRAIN, POINT, ViscoelasticStribeckCurve, viscoelastic_stribeck_curve
+from skinbayes.forward.stribeck_direct import (
+    FIELDS as ELASTIC_FIELDS,
+)
+from skinbayes.lubrication import (
+    LARGEST_STRAIN,
+    POINT,
+    ViscoelasticStribeckCurve,
+    viscoelastic_stribeck_curve,
+)
 from skinbayes.lubrication.viscoelastic_ball import viscoelastic_ball_curve
 from skinbayes.lubrication.viscoelastic_liquid import viscoelastic_stribeck_curve_of_liquid
 from skinbayes.lubrication.viscoelastic_memory import (
@@ -92,7 +99,7 @@ def _one(inputs: Inputs, speeds: FloatArray, tables: Tables, theory: Theory) -> 
 
 
 def _curve(inputs: Inputs, speed: float, tables: Tables, theory: Theory) -> ViscoelasticStribeckCurve:
-    held = at_frequency(inputs, tissue_of({**inputs, "sliding_speed": speed}, theory.substrate))
+    held = at_frequency(inputs, tissue_of({**inputs, "sliding_speed": np.asarray(speed)}, theory.substrate))
     curve = viscoelastic_ball_curve if theory.contact == POINT else viscoelastic_stribeck_curve
     given: dict[str, Any] = {
         "spectrum": spectrum_of(inputs, tables),
@@ -120,7 +127,7 @@ def _curve(inputs: Inputs, speed: float, tables: Tables, theory: Theory) -> Visc
 
 def skin_of(inputs: Inputs, substrate: str) -> ViscoelasticSkin:
     """Layered skin of one substrate, for scalar inputs."""
-    parts = {}
+    parts: dict[str, ViscoelasticMaterial | ConstantLossMaterial] = {}
     for part in ("layer", "bulk"):
         modulus, ratio = float(inputs[f"young_modulus_{part}"]), float(inputs[f"poisson_ratio_{part}"])
         if substrate != STANDARD_LINEAR_SOLID:
@@ -132,7 +139,9 @@ def skin_of(inputs: Inputs, substrate: str) -> ViscoelasticSkin:
             )
             continue
         strength, time = (float(inputs[f"relaxation_{what}_{part}"]) for what in ("strength", "time"))
-        relaxing = {} if strength == 0 else {"relaxing_moduli": [modulus * strength], "relaxation_times": [time]}
+        relaxing = (
+            {} if strength == 0 else {"relaxing_moduli": [modulus * strength], "relaxation_times": [time]}
+        )
         parts[part] = ViscoelasticMaterial(equilibrium_modulus=modulus, poisson_ratio=ratio, **relaxing)
     return ViscoelasticSkin(**parts, layer_thickness=float(inputs["layer_thickness"]))
 

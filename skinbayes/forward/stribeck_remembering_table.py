@@ -92,7 +92,9 @@ def prepare(
         "stribeck-memory",
         plan.key(),
         MemoryCorrection,
-        lambda unfinished: build_memory_correction(plan, table, processes=cores, progress=progress, kept=unfinished),
+        lambda unfinished: build_memory_correction(
+            plan, table, processes=cores, progress=progress, kept=unfinished
+        ),
     )
     assert correction is not None
     tabulated = RememberingStribeck(table, names, correction, _terms(table, growth))
@@ -106,16 +108,18 @@ def prepare(
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
         abscissa=tabulated.abscissa,
-        accuracy=f"Friction is read from a table of films of a {theory.contact} contact at the moduli of the frequency v/b, with a "
-        f"correction for the memory of the tissue; at {correction.held_out_count} places that they were not made from it differs "
-        f"from the film solver of a cylinder by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and {worst:.2g} % "
-        "at worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as impossible."
+        accuracy=f"Friction is read from a table of films of a {theory.contact} contact at the moduli of the frequency v/b, with "
+        f"a correction for the memory of the tissue; at {correction.held_out_count} places that they were not made from it "
+        f"differs from the film solver of a cylinder by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and "
+        f"{worst:.2g} % at worst. Beyond the table, which holds all but the tails of the priors, parameters count as impossible."
         + (of_ball if theory.contact == POINT else ""),
     )
     return with_profile(fast)
 
 
-def _at_corners(ranges: Ranges, substrate: str) -> tuple[dict[str, tuple[float, float]], list[float], float, tuple[float, float]]:
+def _at_corners(
+    ranges: Ranges, substrate: str
+) -> tuple[dict[str, tuple[float, float]], list[float], float, tuple[float, float]]:
     """Ranges of the parameters of the films with moduli at v/b, by how much each of the two rises (ln), and the ranges of memory.
 
     Moduli at v/b, strength and Deborah number are monotonic in each input, so that they are largest and smallest at corners.
@@ -146,8 +150,8 @@ def _at_corners(ranges: Ranges, substrate: str) -> tuple[dict[str, tuple[float, 
 def _stiffened(given: tuple[float, float], growth: FloatArray) -> tuple[float, float]:
     """Range of a modulus at v/b, Pa, from its own range and ln of what it is multiplied by there.
 
-    The tail of the prior and the fastest, most relaxing contact hardly meet: beyond the middle of the range an end reaches as far as
-    the root of the sum of the squares of the two, which is both together where one of them does not vary.
+    The tail of the prior and the fastest, most relaxing contact hardly meet: beyond the middle of the range an end reaches as
+    far as the root of the sum of the squares of the two, which is both together where one of them does not vary.
     """
     low, high = np.log(given)
     middle, half = (low + high) / 2, (high - low) / 2
@@ -162,5 +166,7 @@ def _terms(table: FilmTable, growth: list[float]) -> int:
     """Terms that suffice, to 1e-4 of ln of the films, along the axis whose rows differ by no more than moduli rise."""
     if not table.axes.names:
         return 1
-    half = sum(abs(factor) * rise / 2 for factor, rise in zip(table.axes.combination[0, :2], growth, strict=True))
+    half = sum(
+        abs(factor) * rise / 2 for factor, rise in zip(table.axes.combination[0, :2], growth, strict=True)
+    )
     return 3 + int(np.ceil(15 * half))

@@ -45,7 +45,7 @@ AFTERWARDS = (
 )  # fmt: skip
 """Inputs that enter exactly, whatever the table."""
 
-HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])  
+HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])
 """Inputs that are axes of the table, if they vary."""
 
 

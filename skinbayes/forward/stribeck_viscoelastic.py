@@ -1,9 +1,10 @@
-"""Forward model ``stribeck`` on skin that is not elastic: speed and viscosity act apart, and the tissue dissipates (Sect. 6.2)."""
+"""Forward model ``stribeck`` on skin that relaxes: speed and viscosity act apart, and the tissue dissipates (Sect. 6.2)."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,11 @@ from skinbayes.forward.stribeck_direct import FLAGS, Theory
 from skinbayes.forward.stribeck_remembering import FIELDS, solve, with_profile
 from skinbayes.forward.stribeck_remembering_table import prepare
 from skinbayes.lubrication import REASONS_FOR_NO_PREDICTION
-from skinbayes.lubrication.viscoelastic_memory import CONSTANT_LOSS, RELAXATION_PARAMETERS, STANDARD_LINEAR_SOLID
+from skinbayes.lubrication.viscoelastic_memory import (
+    CONSTANT_LOSS,
+    RELAXATION_PARAMETERS,
+    STANDARD_LINEAR_SOLID,
+)
 
 REFERENCE_ANGULAR_FREQUENCY = 10.0
 """1/s, at which moduli of a constant loss angle are given unless told otherwise: that of a contact of 1 mm at 1 cm/s."""
@@ -28,7 +33,9 @@ LAYER_DEFAULTS = {
 _APART = "on skin that is not elastic speed and viscosity act apart, and their product does not say enough"
 
 
-def _evaluate(inputs: Inputs, tables: Tables, theory: Theory, names: tuple[str, ...]) -> dict[str, FloatArray]:
+def _evaluate(
+    inputs: Inputs, tables: Tables, theory: Theory, names: tuple[str, ...]
+) -> dict[str, FloatArray]:
     found = solve(inputs, tables, names, theory)
     return {name: found[name] for name in FIELDS}
 
@@ -76,7 +83,7 @@ def on_viscoelastic_skin(elastic: ForwardModel, theory: Theory) -> ForwardModel:
         why_needed=dict.fromkeys(needed, _APART),
     )
     names = bare.input_names()
-    chosen = {"theory": theory, "names": names}
+    chosen: dict[str, Any] = {"theory": theory, "names": names}
     model = replace(
         bare,
         evaluate=partial(_evaluate, **chosen),

@@ -21,7 +21,6 @@ from skinbayes.lubrication.contact_films import POINT
 from skinbayes.lubrication.film_axes import FilmAxes, Scales, film_scales
 from skinbayes.lubrication.film_point import end_coordinate, log_end
 from skinbayes.lubrication.film_reference import SmoothFilms
-from skinbayes.lubrication.smooth_memory import SmoothWithMemory
 from skinbayes.lubrication.film_table import (
     ANCHORS,
     BOUNDARY,
@@ -36,8 +35,17 @@ from skinbayes.lubrication.film_table import (
     SLOWEST,
     FilmTable,
 )
+from skinbayes.lubrication.smooth_memory import SmoothWithMemory
 
-_POWER = {CENTRAL: 0.0, BOUNDARY: 0.0, COUETTE: 0.0, PRESSURE_FLOW: 1.0, MINIMUM: 0.0, FRACTION: 0.0, HYSTERESIS: 0.0}
+_POWER = {
+    CENTRAL: 0.0,
+    BOUNDARY: 0.0,
+    COUETTE: 0.0,
+    PRESSURE_FLOW: 1.0,
+    MINIMUM: 0.0,
+    FRACTION: 0.0,
+    HYSTERESIS: 0.0,
+}
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
 
 _REFERENCE = REFERENCE | {HYSTERESIS: 4}
@@ -84,7 +92,12 @@ class ContractedFilms:
         names = ("start", "anchor", "unit", "inside")
         scales = Scales(*(function(scale) for scale in self.scales))
         return replace(
-            self, scales=scales, end=None, log_loss=None, smooth=self.smooth.mapped(function), **{name: function(getattr(self, name)) for name in names}
+            self,
+            scales=scales,
+            end=None,
+            log_loss=None,
+            smooth=self.smooth.mapped(function),
+            **{name: function(getattr(self, name)) for name in names},
         )
 
     def log_outputs(self, log_number: FloatArray, outputs: Sequence[int]) -> list[FloatArray]:

@@ -225,7 +225,9 @@ def _tabulated(
         whole_rows = [np.broadcast_to(x, shape) for x in others]
         memory = [np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)) for x in memory]
         held = table.coefficients.shape[-1] * (max(rows, 1) if any(x.shape[1] > 1 for x in logs) else 1)
-        pieces = _COEFFICIENTS // (1 if tissue is None else 4)  # a correction is as large again, and smooth films are beside it
+        pieces = _COEFFICIENTS // (
+            1 if tissue is None else 4
+        )  # a correction is as large again, and smooth films are beside it
         step = max(1, min(_POINTS // max(rows, 1), pieces // held))
         parts = [
             _part(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -28,8 +28,8 @@ def viscoelastic_ball_curve(
     """The curve of the elastic ball of the same |E| at v/b, each part times that of the viscoelastic over the elastic cylinder.
 
     An approximation: the cylinders are compared at 0.8 of the speed times viscosity, where they carry as much on the film. The
-    hysteresis is that of the cylinder times 0.663, as everywhere. Arguments are those of `viscoelastic_stribeck_curve`, of one speed,
-    m/s, and viscosities, Pa s, shape ``(K,)``.
+    hysteresis is that of the cylinder times 0.663, as everywhere. Arguments are those of `viscoelastic_stribeck_curve`, of one
+    speed, m/s, and viscosities, Pa s, shape ``(K,)``.
     """
     viscosities = np.atleast_1d(np.asarray(viscosity, dtype=np.float64))
     given = {"normal_force": ball["normal_force"], "sphere_radius": ball["sphere_radius"]}
@@ -38,13 +38,16 @@ def viscoelastic_ball_curve(
         layer=ViscoelasticMaterial(
             equilibrium_modulus=held.young_modulus_layer, poisson_ratio=held.poisson_ratio_layer
         ),
-        bulk=ViscoelasticMaterial(equilibrium_modulus=held.young_modulus_bulk, poisson_ratio=held.poisson_ratio_bulk),
+        bulk=ViscoelasticMaterial(
+            equilibrium_modulus=held.young_modulus_bulk, poisson_ratio=held.poisson_ratio_bulk
+        ),
         layer_thickness=skin.layer_thickness,
     )
     point = stribeck_curve(speed * viscosities, contact=POINT, skin=held, **ball)
     endless = ball | {"thickest_film": np.inf}
     with_memory, without = (
-        viscoelastic_stribeck_curve(speed, SIMILAR_SPEED * viscosities, skin=one, **endless) for one in (skin, elastic)
+        viscoelastic_stribeck_curve(speed, SIMILAR_SPEED * viscosities, skin=one, **endless)
+        for one in (skin, elastic)
     )
     names = ("boundary", "couette", "asperity_load_fraction", "minimum_film", "central_film")
     found = {
@@ -52,7 +55,9 @@ def viscoelastic_ball_curve(
     }
     # the pressure flow up to the edge of a ball may be of either sign: the whole drag is compared
     drag = point.couette + point.pressure_flow
-    drag = drag * ((with_memory.couette + with_memory.pressure_flow) / (without.couette + without.pressure_flow))
+    drag = drag * (
+        (with_memory.couette + with_memory.pressure_flow) / (without.couette + without.pressure_flow)
+    )
     found["asperity_load_fraction"] = np.minimum(found["asperity_load_fraction"], 1.0)
     found |= {"pressure_flow": drag - found["couette"], "hysteresis": with_memory.hysteresis}
     found["friction_coefficient"] = found["boundary"] + drag + found["hysteresis"]

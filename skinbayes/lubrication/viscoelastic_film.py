@@ -190,7 +190,10 @@ class _Stage:
         names = {entry.name for entry in fields(ViscoelasticFilms)} & set(LubricatedFilms._fields)
         part: dict[str, FloatArray] = {name: getattr(films, name) for name in names}
         whole = np.full(films.couette.shape, 1.0)
-        part |= {"reference_modulus": self._scales.modulus * whole, "half_width": self._scales.half_width * whole}
+        part |= {
+            "reference_modulus": self._scales.modulus * whole,
+            "half_width": self._scales.half_width * whole,
+        }
         part["hysteresis"] = np.nan * whole
         if self._kernel is not None:
             pressure = (films.fluid_pressure + films.asperity_pressure) / peak

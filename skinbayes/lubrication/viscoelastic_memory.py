@@ -1,8 +1,8 @@
 """What tissue remembers of a contact that passes, in the units of the contact, and which moduli it has there.
 
 A kernel in these units depends on few numbers. For a standard linear solid they are Δ = E_g/E∞ − 1 and the Deborah number vτ/b,
-for a constant loss angle it is the power n of ``E ∝ (iω)^n`` alone. Tables take ``strength``, ln(1 + Δ) or n, which is 0 for elastic
-tissue, and ``place``, ln of vτ√(1 + Δ)/b, which is 0 where tan δ is largest; it is 0 of a constant loss angle.
+for a constant loss angle it is the power n of ``E ∝ (iω)^n`` alone. Tables take ``strength``, ln(1 + Δ) or n, which is 0 for
+elastic tissue, and ``place``, ln of vτ√(1 + Δ)/b, which is 0 where tan δ is largest; it is 0 of a constant loss angle.
 """
 
 from __future__ import annotations
@@ -89,11 +89,15 @@ def tissue_in_contact(
                 ),
             )
         )
-        given = {name: np.asarray(relaxation[name], dtype=np.float64) for name in RELAXATION_PARAMETERS[substrate]}
+        given = {
+            name: np.asarray(relaxation[name], dtype=np.float64) for name in RELAXATION_PARAMETERS[substrate]
+        }
         # of the contact on tissue of the given modulus; b goes as its power −1/3
         frequency = speed - (half_width + (force + radius - bulk) / 3)
         if substrate == STANDARD_LINEAR_SOLID:
-            fast, time = (np.log(x) for x in (1 + given["relaxation_strength_bulk"], given["relaxation_time_bulk"]))
+            fast, time = (
+                np.log(x) for x in (1 + given["relaxation_strength_bulk"], given["relaxation_time_bulk"])
+            )
             fast = np.where(fast >= 0, fast, np.nan)
             growth = np.zeros(np.broadcast_shapes(frequency.shape, fast.shape, time.shape))
             for _ in range(_STEPS):
@@ -103,7 +107,9 @@ def tissue_in_contact(
             turn = frequency + time
             loss = np.expm1(fast) / (np.exp(turn) + np.exp(-turn)) * np.exp(-growth)
             strength, place = fast, turn + fast / 2
-            fast, time = (np.log(x) for x in (1 + given["relaxation_strength_layer"], given["relaxation_time_layer"]))
+            fast, time = (
+                np.log(x) for x in (1 + given["relaxation_strength_layer"], given["relaxation_time_layer"])
+            )
             layer = layer + _stiffer(frequency + time, np.where(fast >= 0, fast, np.nan))[0]
         elif substrate == CONSTANT_LOSS:
             power, of_layer = (
@@ -116,7 +122,9 @@ def tissue_in_contact(
             strength, place, loss = power, np.zeros(np.shape(power)), np.sin(np.pi / 2 * power)
             layer = layer + of_layer * (frequency - reference)
         else:
-            raise InputError(f"substrate is {substrate!r:.60}, but must be {' or '.join(map(repr, SUBSTRATES[1:]))}.")
+            raise InputError(
+                f"substrate is {substrate!r:.60}, but must be {' or '.join(map(repr, SUBSTRATES[1:]))}."
+            )
         return TissueInContact(layer, bulk + growth, frequency, strength, place, loss)
 
 

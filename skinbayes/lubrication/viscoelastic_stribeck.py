@@ -191,6 +191,7 @@ def _contact(
     speed: float, force: float, radius: float, skin: ViscoelasticSkin
 ) -> tuple[EquivalentCylinder, float, float]:
     """Cylinder of Eq. 9, its b/Rc and v/b (1/s), with the modulus of the tissue at that frequency."""
+
     def cylinder_on(modulus: float) -> EquivalentCylinder:
         return cylinder_of_sphere(force, radius, reduced_modulus=modulus)
 

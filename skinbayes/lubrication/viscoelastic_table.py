@@ -91,7 +91,9 @@ class MemoryPlan:
         if self.substrate != STANDARD_LINEAR_SOLID:
             return 3 + int(np.ceil(self.largest_strength / 0.15)), 1
         width = self.ends[1] - self.ends[0]
-        return 3 + int(np.ceil(self.largest_strength)), 1 if width < 2 * NARROWEST else 3 + int(np.ceil(5 * width))
+        return 3 + int(np.ceil(self.largest_strength)), 1 if width < 2 * NARROWEST else 3 + int(
+            np.ceil(5 * width)
+        )
 
     @property
     def nodes(self) -> tuple[int, ...]:
@@ -134,7 +136,8 @@ def build_memory_correction(
     nodes = [*product(*(zeros(count).tolist() for count in plan.nodes))]
     places = axes.representative(np.array(nodes).reshape(len(nodes), len(axes.names)))
     grid = np.linspace(SLOWEST, FASTEST, plan.films.speeds)
-    fine = SLOWEST + (FASTEST - SLOWEST) / (plan.films.speeds - 1) * np.arange(plan.films.speeds + _BEYOND)
+    step = (FASTEST - SLOWEST) / (plan.films.speeds - 1)
+    fine = np.asarray(SLOWEST + step * np.arange(plan.films.speeds + _BEYOND), dtype=np.float64)
     few = fine[::_EVERY]
     total = (len(kernels) + 2) * len(places) + len(kernels) + 1 + plan.checked
     with Tasks(processes, total, progress, kept) as solve:
@@ -144,7 +147,9 @@ def build_memory_correction(
         of_nodes = partial(_outputs, nodes=plan.films.nodes, substrate=plan.substrate)
         elastic = solve("elastic", of_nodes, ((*one, None) for one in zip(balls, all_numbers, strict=True)))
         smooth = solve(
-            "smooth", partial(smooth_outputs, substrate=plan.substrate, whole_drag=whole), [(0.0, 0.0), *kernels]
+            "smooth",
+            partial(smooth_outputs, substrate=plan.substrate, whole_drag=whole),
+            [(0.0, 0.0), *kernels],
         )
         tasks = ((*one, kernel) for kernel in kernels for one in zip(balls, numbers, strict=True))
         found = solve("memory", of_nodes, tasks).reshape(len(kernels), len(places), HYSTERESIS + 1, few.size)
@@ -177,13 +182,17 @@ def build_memory_correction(
             held_out=np.full(3, np.nan),
             held_out_count=plan.checked,
         )
-        return replace(correction, held_out=_check(correction, table, plan, solve)) if plan.checked else correction
+        return (
+            replace(correction, held_out=_check(correction, table, plan, solve))
+            if plan.checked
+            else correction
+        )
 
 
 def _similar(found: FloatArray, elastic: FloatArray, fine: FloatArray, grid: FloatArray) -> FloatArray:
     """What is added to the anchors and outputs of M cylinders, shape ``(M, 2 + 7 (S + 2))``, at speeds of equal load fractions.
 
-    Relative outputs are those of tissue that remembers, ``(M, 7, F)``, and of elastic one, ``(M, 6, F)``, at speeds of the latter.
+    Relative outputs are those of tissue that remembers, ``(M, 7, F)``, and of elastic one, ``(M, 6, F)``, at its speeds.
     """
     similar = similar_speeds(found, fine, elastic, fine, (HALF, FAINT))
     residual = np.empty((*found.shape[:2], grid.size))
@@ -204,7 +213,9 @@ def _outputs(task: _Task, nodes: int, substrate: str) -> FloatArray:
     if kernel is None:
         elastic = ball.outputs(log_number, nodes)
         return np.concatenate([elastic, np.full((1, log_number.size), np.nan)])
-    return ball.outputs_with_memory(log_number, nodes, substrate=substrate, strength=kernel[0], place=kernel[1])
+    return ball.outputs_with_memory(
+        log_number, nodes, substrate=substrate, strength=kernel[0], place=kernel[1]
+    )
 
 
 def _anchors_of(table: FilmTable, places: FloatArray, balls: list[Ball], solve: Tasks) -> FloatArray:
@@ -225,7 +236,9 @@ def _check(correction: MemoryCorrection, table: FilmTable, plan: MemoryPlan, sol
     strength = rng.uniform(0, correction.largest_strength, plan.checked)
     place = unbent(rng.uniform(correction.first_place, correction.last_place, plan.checked))
     balls = [plan.films.ball(point) for point in drawn]
-    shear_stress = np.array([np.sqrt(np.pi * plan.films.area_correction * ball.twice_variance) / 2 for ball in balls])
+    shear_stress = np.array(
+        [np.sqrt(np.pi * plan.films.area_correction * ball.twice_variance) / 2 for ball in balls]
+    )
     kernels = zip(strength.tolist(), place.tolist(), strict=True)
     tasks = zip(balls, number[:, None], kernels, strict=True)
     outputs = solve("check", partial(_outputs, nodes=_CHECK_NODES, substrate=plan.substrate), tasks)[..., 0]

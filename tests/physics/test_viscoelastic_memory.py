@@ -56,7 +56,11 @@ def skin_of(substrate: str, strength: float, time: float = 0.2) -> ViscoelasticS
 
 def relaxation_of(substrate: str, strength: float, time: float = 0.2) -> dict[str, float]:
     if substrate == "constant_loss":
-        return {"loss_tangent_bulk": strength, "loss_tangent_layer": strength / 2, "reference_angular_frequency": 10.0}
+        return {
+            "loss_tangent_bulk": strength,
+            "loss_tangent_layer": strength / 2,
+            "reference_angular_frequency": 10.0,
+        }
     return {
         "relaxation_strength_bulk": strength,
         "relaxation_time_bulk": time,
@@ -72,7 +76,8 @@ def test_closed_kernel_of_constant_loss_is_the_sum_over_relaxation_times(tangent
     band = {"angular_frequency": 1.0, "lowest_frequency": 1e-4, "highest_frequency": 1e6}
     total = constant_loss_solid(20e3, tangent, **band)
     found, wanted = (
-        viscoelastic_films([1e-2, 1e-2, 0.1], [0.1, 10.0, 10.0], material=m, **CYLINDER) for m in (closed, total)
+        viscoelastic_films([1e-2, 1e-2, 0.1], [0.1, 10.0, 10.0], material=m, **CYLINDER)
+        for m in (closed, total)
     )
     for name in ("central_film", "minimum_film", "couette", "pressure_flow"):
         assert_allclose(getattr(found, name), getattr(wanted, name), rtol=2e-5)
@@ -101,10 +106,16 @@ def test_moduli_and_kernel_in_contact_are_those_of_the_materials(substrate: str)
         tangent = float(skin.bulk.loss_tangent(frequency))
         assert_allclose(tissue.loss, np.sin(np.arctan(tangent)), rtol=1e-10)
         modulus = float(abs(skin.bulk.reduced_modulus(frequency)))
-        load = modulus * (speed / frequency) ** 2 * np.pi / 4 / 4e-3  # of the line contact of that half width on 4 mm
+        load = (
+            modulus * (speed / frequency) ** 2 * np.pi / 4 / 4e-3
+        )  # of the line contact of that half width on 4 mm
         scales = passage(skin.bulk, speed, load_per_length=load, cylinder_radius=4e-3)
         ready, loss = passage_in_contact(
-            substrate, float(tissue.strength), float(tissue.place), modulus=modulus, half_width=speed / frequency
+            substrate,
+            float(tissue.strength),
+            float(tissue.place),
+            modulus=modulus,
+            half_width=speed / frequency,
         )
         assert_allclose(loss, tissue.loss, rtol=1e-10)
         nodes = np.linspace(-3.0, 2.0, 30)
@@ -136,7 +147,9 @@ def test_hysteresis_of_a_dry_ball_of_weak_loss() -> None:
     """(6/π²) sin δ a/R, of Hertz's pressure: hardly rough, hardly lubricated. The next order is 0.33 tan δ."""
     skin = skin_of("constant_loss", 0.01)
     spectrum = replace(SURFACE, rms_height=2e-7)
-    found = viscoelastic_stribeck_curve(0.01, 1e-9, skin=skin, spectrum=spectrum, frictional_shear_stress=0.0, **BALL)
+    found = viscoelastic_stribeck_curve(
+        0.01, 1e-9, skin=skin, spectrum=spectrum, frictional_shear_stress=0.0, **BALL
+    )
     modulus = float(skin_at_speed(0.01, skin=skin, **BALL).young_modulus_bulk) / 0.75
     radius = (3 * BALL["normal_force"] * BALL["sphere_radius"] / (4 * modulus)) ** (1 / 3)
     wanted = 6 / np.pi**2 * np.sin(np.arctan(0.01)) * radius / BALL["sphere_radius"]
@@ -146,9 +159,17 @@ def test_hysteresis_of_a_dry_ball_of_weak_loss() -> None:
 @pytest.fixture(scope="module", params=["constant_loss", "standard_linear_solid"])
 def tables(request: pytest.FixtureRequest):  # type: ignore[no-untyped-def]
     """A table of one ball and the correction of it, three strengths and places enough."""
-    ball = {"young_modulus_layer": 7e6, "young_modulus_bulk": 30e3, "rms_height": 22.4e-6, "layer_thickness": 20e-6}
+    ball = {
+        "young_modulus_layer": 7e6,
+        "young_modulus_bulk": 30e3,
+        "rms_height": 22.4e-6,
+        "layer_thickness": 20e-6,
+    }
     plan = FilmTablePlan(
-        {name: (value, value) for name, value in (ball | BALL).items()}, spectrum=SURFACE, contact="line", checked=0
+        {name: (value, value) for name, value in (ball | BALL).items()},
+        spectrum=SURFACE,
+        contact="line",
+        checked=0,
     )
     table = build_film_table(plan)
     relaxing = request.param != "constant_loss"
@@ -170,8 +191,10 @@ def test_friction_from_the_table_is_that_of_the_solver(tables) -> None:  # type:
     rng = np.random.default_rng(3)
     for _ in range(5):
         speed = 0.01
-        strength, time = (rng.uniform(0.05, 0.55), 10 ** rng.uniform(-1.2, -0.2)) if substrate != "constant_loss" else (
-            rng.uniform(0.03, 0.3), 1.0
+        strength, time = (
+            (rng.uniform(0.05, 0.55), 10 ** rng.uniform(-1.2, -0.2))
+            if substrate != "constant_loss"
+            else (rng.uniform(0.03, 0.3), 1.0)
         )
         skin = skin_of(substrate, strength, time)
         held = skin_at_speed(speed, skin=skin, **BALL)
@@ -182,15 +205,17 @@ def test_friction_from_the_table_is_that_of_the_solver(tables) -> None:  # type:
             tissue = tissue_in_contact(
                 substrate,
                 speed,
-                parameters={"young_modulus_layer": 7e6 * parts["layer"], "young_modulus_bulk": 30e3 * parts["bulk"], **BALL},
+                parameters={
+                    "young_modulus_layer": 7e6 * parts["layer"],
+                    "young_modulus_bulk": 30e3 * parts["bulk"],
+                    **BALL,
+                },
                 relaxation=relaxation,
                 poisson_ratio_bulk=0.5,
             )
             parts["layer"] *= 7e6 / float(np.exp(tissue.log_modulus_layer))
             parts["bulk"] *= 30e3 / float(np.exp(tissue.log_modulus_bulk))
-        materials = {
-            name: softer(getattr(skin, name), factor) for name, factor in parts.items()
-        }
+        materials = {name: softer(getattr(skin, name), factor) for name, factor in parts.items()}
         viscosity = 10 ** rng.uniform(-3, 1.5, 6)
         given = {"spectrum": SURFACE, "frictional_shear_stress": 15e6, **BALL}
         direct = viscoelastic_stribeck_curve(
@@ -259,12 +284,18 @@ def test_beyond_the_table_there_is_no_friction(tables) -> None:  # type: ignore[
 def test_loss_of_indentation_for_many_materials() -> None:
     rng = np.random.default_rng(5)
     for _ in range(10):
-        strength, ratio, tangent = np.expm1(rng.uniform(0, 4.5)), np.exp(rng.uniform(-6, 6)), rng.uniform(0.01, 0.9)
+        strength, ratio, tangent = (
+            np.expm1(rng.uniform(0, 4.5)),
+            np.exp(rng.uniform(-6, 6)),
+            rng.uniform(0.01, 0.9),
+        )
         solid = standard_linear_solid(1.0, 1 + strength, relaxation_time=ratio)
         cycle = indentation_cycle(1.0, 1.0, sphere_radius=1.0, material=solid)
         assert_allclose(loss_fraction_of_relaxation(strength, ratio), cycle.loss_fraction, atol=2e-3)
         assert_allclose(
-            indentation_force_at_rate(1.0, 1.0, sphere_radius=1.0, material=solid), cycle.force.max(), rtol=0.15
+            indentation_force_at_rate(1.0, 1.0, sphere_radius=1.0, material=solid),
+            cycle.force.max(),
+            rtol=0.15,
         )
         fractional = ConstantLossMaterial(modulus=1.0, tan_delta=tangent, reference_frequency=1.0)
         cycle = indentation_cycle(3.0, 2.0, sphere_radius=0.5, material=fractional)
@@ -274,8 +305,12 @@ def test_loss_of_indentation_for_many_materials() -> None:
 
 
 def test_cycle_of_constant_loss_is_that_of_a_sum_over_relaxation_times() -> None:
-    total = constant_loss_solid(20e3, 0.158, angular_frequency=1.0, lowest_frequency=1e-4, highest_frequency=1e5)
+    total = constant_loss_solid(
+        20e3, 0.158, angular_frequency=1.0, lowest_frequency=1e-4, highest_frequency=1e5
+    )
     closed = ConstantLossMaterial(modulus=20e3, tan_delta=0.158, reference_frequency=1.0)
     found, wanted = (indentation_cycle(2.5e-3, 5e-3, sphere_radius=8e-3, material=m) for m in (closed, total))
-    assert_allclose([found.loss_fraction, found.residual_depth], [wanted.loss_fraction, wanted.residual_depth], rtol=1e-6)
+    assert_allclose(
+        [found.loss_fraction, found.residual_depth], [wanted.loss_fraction, wanted.residual_depth], rtol=1e-6
+    )
     assert_allclose(found.force[1:-1], wanted.force[1:-1], rtol=1e-4)
