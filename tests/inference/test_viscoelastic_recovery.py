@@ -1,4 +1,4 @@
-"""The loss of simulated skin comes back at the conditions of the finger pads, and the right substrate is preferred as often as it can."""
+"""Loss of simulated skin comes back at the conditions of the finger pads, and elastic skin is refuted where it can be."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NEXT_TO_NOTHING = 0.02
 def study(
     simulations: int, seed: int = 31
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """True tan δ, level of it, posterior mean and standard deviation of its logit, and ln of the Bayes factor against elastic skin."""
+    """True tan δ, its level, posterior mean and deviation of its logit, and ln of the Bayes factor against elastic skin."""
     maker = load_problem("finger-stribeck-viscoelastic")
     place = maker.names.index("loss_tangent_bulk")
     rng = np.random.default_rng(seed)
