@@ -71,6 +71,7 @@ def curve(force: float, area: float, length: float) -> dict[str, float]:
 
 
 def main() -> None:
+    """Print the tables."""
     for force, area in PADS:
         radius = np.sqrt(area / np.pi)
         ball = float(sphere_of_contact(force, radius, reduced_modulus=float(SKIN.contact_modulus)))

@@ -15,7 +15,6 @@ from skinbayes.contact.elliptic_contact import (
 from skinbayes.contact.gaps import GapDistribution, gap_distribution
 from skinbayes.contact.hertz import HertzSphere, sphere_contact, sphere_force, sphere_of_contact
 from skinbayes.contact.homogeneous import HomogeneousSolid
-from skinbayes.contact.indentation_loss import loss_fraction_of_constant_loss, loss_fraction_of_relaxation
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.layered_contact import (
     LayeredLine,
@@ -47,7 +46,6 @@ from skinbayes.contact.viscoelastic_indentation import (
     IndentationCycle,
     indentation_creep,
     indentation_cycle,
-    indentation_force_at_rate,
     indentation_relaxation,
 )
 from skinbayes.contact.viscoelastic_line_contact import ViscoelasticLine, viscoelastic_line_contact
@@ -91,14 +89,11 @@ __all__ = [
     "gap_distribution",
     "indentation_creep",
     "indentation_cycle",
-    "indentation_force_at_rate",
     "indentation_relaxation",
     "layered_line_contact",
     "layered_modulus",
     "layered_sphere_contact",
     "line_contact",
-    "loss_fraction_of_constant_loss",
-    "loss_fraction_of_relaxation",
     "material_of_dynamic_moduli",
     "mean_separation",
     "modulus_under_ball",

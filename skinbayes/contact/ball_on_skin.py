@@ -15,9 +15,9 @@ def modulus_under_ball(
 ) -> FloatArray:
     """Plane-strain modulus of the half-space on which a ball has the contact radius that it has on the skin.
 
-    The uppermost layer, stratum corneum, is taken to be far thinner than the contact is wide and left out: it bends with what lies
-    below. So it is `contact_modulus` of one layer, and of `StackedSkin` that of `layered_sphere_contact` with the others, which
-    may be as thick as the contact is wide. With it in Hertz's formulas contact radius and mean pressure are right; the pressure
+    The uppermost layer, stratum corneum, is taken to be far thinner than the contact is wide and left out: it bends with what
+    lies below. So it is `contact_modulus` of one layer, and of `StackedSkin` that of `layered_sphere_contact` with the others,
+    which may be as thick as the contact is wide. With it in Hertz's formulas contact radius and mean pressure are right; the pressure
     profile is that of a half-space.
 
     Parameters
@@ -33,8 +33,8 @@ def modulus_under_ball(
 
     Notes
     -----
-    About 0.1 s for each distinct skin of several layers. Friction of a lubricated ball with this modulus is within 3 to 5 % of that
-    with the films on the layers themselves where the base is stiffer, 10 to 17 % where it is ten times softer. Under the
+    About 0.1 s for each distinct skin of several layers. Friction of a lubricated ball with this modulus is within 3 to 5 % of
+    that with the films on the layers themselves where the base is stiffer, 10 to 17 % where it is ten times softer. Under the
     skin and the ball of the paper the stratum corneum narrows the contact by 2.2 % and changes friction by 0.4 % at most.
 
     References

@@ -5,18 +5,20 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebpts1, chebval, chebval2d, chebvander
+from scipy.special import dawsn, gamma
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.viscoelastic_indentation import indentation_cycle
 from skinbayes.contact.viscoelastic_materials import standard_linear_solid
-from skinbayes.emulation.chebyshev import grid_coefficients, summed, zeros
 
 LARGEST_RELAXATION_STRENGTH = 100.0
 """Δ, dimensionless, up to which the loss of a standard linear solid is known."""
 
 _POWERS, _STRENGTHS, _TIMES = 10, 9, 24  # nodes
 _TURN = 3.0  # of ln of the time ratio, over which its axis bends
+_SHORT = 1e-4  # t/τ below which nothing has relaxed
 _FAR = 8.0  # of it, beyond which the loss is a power of the time ratio
 _END = _FAR / np.hypot(_TURN, _FAR)
 
@@ -39,7 +41,7 @@ def loss_fraction_of_constant_loss(loss_tangent: ArrayLike) -> FloatArray:
     """
     tangent = np.asarray(loss_tangent, dtype=np.float64)
     power = np.where((tangent >= 0) & (tangent < 1), 2 / np.pi * np.arctan(tangent), np.nan)
-    return np.asarray(power * np.polynomial.chebyshev.chebval(4 * power - 1, _per_power()))[()]
+    return np.asarray(power * chebval(4 * power - 1, _per_power()))[()]
 
 
 def loss_fraction_of_relaxation(relaxation_strength: ArrayLike, time_ratio: ArrayLike) -> FloatArray:
@@ -66,11 +68,25 @@ def loss_fraction_of_relaxation(relaxation_strength: ArrayLike, time_ratio: Arra
         fast, time = np.log(1 + strength), np.log(ratio)
         place = time + fast / 2
         held = np.clip(place, -_FAR, _FAR)
-        scaled = 2 * fast / np.log(1 + LARGEST_RELAXATION_STRENGTH) - 1, held / np.hypot(_TURN, held) / _END
-        good = (strength >= 0) & (np.abs(scaled[0]) <= 1 + 1e-12) & np.isfinite(place)
-        flat = [np.where(good, x, 0.0).reshape(-1, 1) for x in scaled]
-        relative = summed(_per_sine(), flat, flat[0].size)[..., 0, 0].reshape(strength.shape)
+        first = 2 * fast / np.log(1 + LARGEST_RELAXATION_STRENGTH) - 1
+        good = (strength >= 0) & (np.abs(first) <= 1 + 1e-12) & np.isfinite(place)
+        second = np.where(good, held / np.hypot(_TURN, held) / _END, 0.0)
+        relative = chebval2d(np.where(good, first, 0.0), second, _per_sine())
         return np.asarray(np.where(good, np.exp(relative) * _sine(strength, ratio), np.nan))[()]
+
+
+def stiffening_of_constant_loss(loss_tangent: FloatArray, turns: FloatArray) -> FloatArray:
+    """Force at the end of pressing in at a constant rate over that of elastic tissue of the modulus at ω_r; ``turns``: ω_r t."""
+    power = 2 / np.pi * np.arctan(loss_tangent)
+    return np.asarray(turns**-power * 1.5 * gamma(1.5) / gamma(2.5 - power))
+
+
+def stiffening_of_relaxation(relaxation_strength: FloatArray, turns: FloatArray) -> FloatArray:
+    """The same over that of relaxed tissue, for Δ and t/τ: ``1 + Δ ∫exp((s − t)/τ) d(s^(3/2))/t^(3/2)``."""
+    root = np.sqrt(turns)
+    # by the series of Dawson's integral where it has no digits
+    remaining = np.where(turns < _SHORT, 1 - 2 / 5 * turns, 1.5 * (root - dawsn(root)) / turns**1.5)
+    return np.asarray(1 + relaxation_strength * remaining)
 
 
 def _sine(strength: FloatArray, ratio: FloatArray) -> FloatArray:
@@ -82,7 +98,7 @@ def _sine(strength: FloatArray, ratio: FloatArray) -> FloatArray:
 @lru_cache(maxsize=1)
 def _per_power() -> FloatArray:
     """Coefficients of loss over n, for n from 0 to 1/2."""
-    powers = (zeros(_POWERS) + 1) / 4
+    powers = (chebpts1(_POWERS) + 1) / 4
     found = [
         indentation_cycle(
             1.0,
@@ -95,16 +111,16 @@ def _per_power() -> FloatArray:
         / n
         for n in powers.tolist()
     ]
-    return grid_coefficients(np.array(found)[:, None], ends=False)[:, 0]
+    return np.asarray(np.linalg.solve(chebvander(4 * powers - 1, _POWERS - 1), np.array(found)))
 
 
 @lru_cache(maxsize=1)
 def _per_sine() -> FloatArray:
     """Coefficients of ln of loss over sin δ, over ln(1 + Δ) and the bent axis of the time."""
-    fast = (zeros(_STRENGTHS) + 1) / 2 * np.log(1 + LARGEST_RELAXATION_STRENGTH)
-    axis = _END * zeros(_TIMES)
+    fast = (chebpts1(_STRENGTHS) + 1) / 2 * np.log(1 + LARGEST_RELAXATION_STRENGTH)
+    axis = _END * chebpts1(_TIMES)
     places = _TURN * axis / np.sqrt(1 - np.square(axis))
-    found = np.empty((_STRENGTHS, _TIMES, 1))
+    found = np.empty((_STRENGTHS, _TIMES))
     for i, strength in enumerate(np.expm1(fast).tolist()):
         for j, ratio in enumerate(np.exp(places - fast[i] / 2).tolist()):
             cycle = indentation_cycle(
@@ -114,4 +130,5 @@ def _per_sine() -> FloatArray:
                 material=standard_linear_solid(1.0, 1 + strength, relaxation_time=ratio),
             )
             found[i, j] = np.log(cycle.loss_fraction / _sine(np.asarray(strength), np.asarray(ratio)))
-    return grid_coefficients(found, ends=False)
+    along = np.linalg.solve(chebvander(chebpts1(_STRENGTHS), _STRENGTHS - 1), found)
+    return np.asarray(np.linalg.solve(chebvander(chebpts1(_TIMES), _TIMES - 1), along.T).T)

@@ -197,49 +197,6 @@ def indentation_relaxation(
         return np.asarray(4 / 3 * modulus * np.sqrt(radius) * pressed**1.5)[()]
 
 
-def indentation_force_at_rate(
-    rate: ArrayLike,
-    depth: ArrayLike,
-    *,
-    sphere_radius: ArrayLike,
-    material: ViscoelasticMaterial | ConstantLossMaterial,
-) -> FloatArray:
-    """Force on a ball that is pressed in at a constant rate when it has come to a depth, ``F = (4√R/3) ∫ E*(t − s) d(δ^(3/2))``.
-
-    Parameters
-    ----------
-    rate : dδ/dt, m/s, > 0, shape ``(K,)`` or a scalar
-    depth : δ, m, > 0, broadcasts with ``rate``
-    sphere_radius : R, m, > 0, broadcasts with ``rate``
-    material : of the half-space, one material, moduli in Pa
-
-    Returns
-    -------
-    force : F, N, broadcast shape; nan where an argument is impossible
-
-    References
-    ----------
-    Lee & Radok, J. Appl. Mech. 27 (1960) 438.
-
-    Examples
-    --------
-    >>> from skinbayes.contact import standard_linear_solid
-    >>> tissue = standard_linear_solid(20e3, 28e3, relaxation_time=0.1)
-    >>> print(indentation_force_at_rate([1e-5, 1e-3, 1.0], 1e-3, sphere_radius=8e-3, material=tissue).round(4))
-    [0.1007 0.1058 0.1405]
-    """
-    speed, pressed, radius = (np.asarray(x, dtype=np.float64) for x in (rate, depth, sphere_radius))
-    shape = np.broadcast_shapes(speed.shape, pressed.shape, radius.shape)
-    with np.errstate(all="ignore"):
-        time = np.broadcast_to(pressed / speed, shape).reshape(-1)
-        time = np.where((time > 0) & (time < np.inf), time, np.nan)
-        loaded = _loaded(material, time, time).reshape(shape)
-        stiffness = np.where(radius > 0, 4 / 3 * np.sqrt(radius), np.nan) * plane_strain(
-            1.0, material.poisson_ratio
-        )
-        return np.asarray(stiffness * speed**1.5 * loaded)[()]
-
-
 def _halved(function: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
     """Zeros of a falling function between low and high, to rounding."""
     for _ in range(_HALVINGS):

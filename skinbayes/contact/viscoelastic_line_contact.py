@@ -125,10 +125,11 @@ def modulus_in_contact(
     material: AnyMaterial, speed: float, half_width_of: Callable[[float], float]
 ) -> tuple[float, float]:
     """|E*| at v/b, Pa, at v, m/s, and b, m, which depends on it; nan if it has no such modulus."""
-    fractional = isinstance(material, ConstantLossMaterial)
-    if fractional and not speed > 0 and float(material.power) > 0:
-        return np.nan, np.nan  # given time enough, it gives way without end
-    start = float(material.reference_frequency) if fractional else 0.0
+    start = 0.0
+    if isinstance(material, ConstantLossMaterial):
+        if not speed > 0 and float(material.power) > 0:
+            return np.nan, np.nan  # given time enough, it gives way without end
+        start = float(np.asarray(material.reference_frequency))
     modulus = float(abs(material.reduced_modulus(start)))
     for _ in range(60):
         half_width = half_width_of(modulus)

@@ -136,8 +136,8 @@ def summed_locally(
 ) -> FloatArray:
     """`summed`, where the rows of a vector lie close to each other along one axis.
 
-    Between the outermost rows of each vector the series along ``axis`` is replaced by one of ``count`` terms through as many nodes:
-    rows then have fewer terms. The other arguments and the values are those of `summed`; rows must vary along ``axis``.
+    Between the outermost rows of each vector the series along ``axis`` is replaced by one of ``count`` terms through as many
+    nodes: rows then have fewer terms. The other arguments and the values are those of `summed`; rows must vary along ``axis``.
     """
     *counts, columns = parts.shape
     place = places[axis]

@@ -1,20 +1,20 @@
-"""Forward model ``indentation`` of tissue that is not elastic: force on the way in, and the loss of a cycle, at a constant rate."""
+"""Forward model ``indentation`` of tissue that relaxes: force on the way in and loss of a cycle, at a constant rate."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-from scipy.special import dawsn, gamma
-
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import loss_fraction_of_constant_loss, loss_fraction_of_relaxation
+from skinbayes.contact.indentation_loss import (
+    loss_fraction_of_constant_loss,
+    loss_fraction_of_relaxation,
+    stiffening_of_constant_loss,
+    stiffening_of_relaxation,
+)
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.stribeck_viscoelastic import REFERENCE_ANGULAR_FREQUENCY
 from skinbayes.lubrication.viscoelastic_memory import STANDARD_LINEAR_SOLID
-
-_SHORT = 1e-4  # t/τ below which nothing has relaxed
 
 
 def indentation_of_relaxing(elastic: ForwardModel, substrate: str) -> ForwardModel:
@@ -34,22 +34,20 @@ def indentation_of_relaxing(elastic: ForwardModel, substrate: str) -> ForwardMod
 
 
 def _relaxing(inputs: Inputs, tables: Tables, elastic: ForwardModel) -> dict[str, FloatArray]:
-    strength, time = inputs["relaxation_strength_bulk"], inputs["relaxation_time_bulk"]
-    turns = inputs["indentation_depth"] / inputs["indentation_rate"] / time  # t/τ
-    root = np.sqrt(turns)
-    # ∫E(t − s) d(s^(3/2))/(E∞ t^(3/2)) − 1 over Δ; by the series of Dawson's integral where it has no digits
-    remaining = np.where(turns < _SHORT, 1 - 2 / 5 * turns, 1.5 * (root - dawsn(root)) / turns**1.5)
+    strength = inputs["relaxation_strength_bulk"]
+    turns = inputs["indentation_depth"] / inputs["indentation_rate"] / inputs["relaxation_time_bulk"]  # t/τ
     force = elastic.evaluate(inputs, tables)["indentation_force"]
     return {
-        "indentation_force": force * (1 + strength * remaining),
+        "indentation_force": force * stiffening_of_relaxation(strength, turns),
         "indentation_loss_fraction": loss_fraction_of_relaxation(strength, 1 / turns),
     }
 
 
 def _of_constant_loss(inputs: Inputs, tables: Tables, elastic: ForwardModel) -> dict[str, FloatArray]:
-    power = 2 / np.pi * np.arctan(inputs["loss_tangent_bulk"])
+    tangent = inputs["loss_tangent_bulk"]
     turns = inputs["reference_angular_frequency"] * inputs["indentation_depth"] / inputs["indentation_rate"]
-    stiffer = turns**-power * 1.5 * gamma(1.5) / gamma(2.5 - power)
     force = elastic.evaluate(inputs, tables)["indentation_force"]
-    loss = loss_fraction_of_constant_loss(inputs["loss_tangent_bulk"])
-    return {"indentation_force": force * stiffer, "indentation_loss_fraction": loss + 0.0 * force}
+    return {
+        "indentation_force": force * stiffening_of_constant_loss(tangent, turns),
+        "indentation_loss_fraction": loss_fraction_of_constant_loss(tangent) + 0.0 * force,
+    }

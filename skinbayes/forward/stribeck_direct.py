@@ -70,7 +70,7 @@ def speed_viscosity_product_of(inputs: Inputs) -> FloatArray:
 
 
 class Theory(NamedTuple):
-    """What is chosen beside the inputs: the contact, "point", "line" or "pad", where flow factors come from, and the substrate."""
+    """What is chosen beside the inputs: contact ("point", "line" or "pad"), where flow factors come from, and substrate."""
 
     contact: str = POINT
     flow_factors: str = "none"

@@ -99,7 +99,7 @@ def _one(inputs: Inputs, speeds: FloatArray, tables: Tables, theory: Theory) -> 
 
 
 def _curve(inputs: Inputs, speed: float, tables: Tables, theory: Theory) -> ViscoelasticStribeckCurve:
-    held = at_frequency(inputs, tissue_of({**inputs, "sliding_speed": speed}, theory.substrate))
+    held = at_frequency(inputs, tissue_of({**inputs, "sliding_speed": np.asarray(speed)}, theory.substrate))
     curve = viscoelastic_ball_curve if theory.contact == POINT else viscoelastic_stribeck_curve
     given: dict[str, Any] = {
         "spectrum": spectrum_of(inputs, tables),
@@ -127,7 +127,7 @@ def _curve(inputs: Inputs, speed: float, tables: Tables, theory: Theory) -> Visc
 
 def skin_of(inputs: Inputs, substrate: str) -> ViscoelasticSkin:
     """Layered skin of one substrate, for scalar inputs."""
-    parts = {}
+    parts: dict[str, ViscoelasticMaterial | ConstantLossMaterial] = {}
     for part in ("layer", "bulk"):
         modulus, ratio = float(inputs[f"young_modulus_{part}"]), float(inputs[f"poisson_ratio_{part}"])
         if substrate != STANDARD_LINEAR_SOLID:

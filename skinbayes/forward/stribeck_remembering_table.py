@@ -20,12 +20,14 @@ from skinbayes.forward.stribeck_table import (
     kept_films,
 )
 from skinbayes.lubrication.contact_films import POINT
+from skinbayes.lubrication.film_table import FilmTable
 from skinbayes.lubrication.viscoelastic_correction import MemoryCorrection, RememberingTissue
 from skinbayes.lubrication.viscoelastic_memory import RELAXATION_PARAMETERS, STANDARD_LINEAR_SOLID
 from skinbayes.lubrication.viscoelastic_table import MemoryPlan, build_memory_correction
 
 _WEAKEST = 1e-3  # strength up to which a correction reaches at least
 _SPARE = 1e-6  # of ln, beyond the corners of the ranges
+_STIFFENED = ("young_modulus_layer", "young_modulus_bulk")
 _FIRST = 1e-9  # Δ in place of none, where a Deborah number is looked for
 
 
@@ -36,16 +38,21 @@ class RememberingStribeck(TabulatedStribeck):
     Attributes
     ----------
     correction : what memory adds to the table
+    terms : see `RememberingTissue`, where rows share the moduli of their skin
     """
 
     correction: MemoryCorrection
+    terms: int
     fields = FIELDS
 
     def skin(self, inputs: Inputs) -> tuple[Inputs, RememberingTissue | None]:
         """Inputs with moduli at v/b, and the memory of the tissue."""
         tissue = tissue_of(inputs, self.correction.substrate)
         memory = {name: getattr(tissue, name) for name in ("strength", "place", "loss")}
-        return at_frequency(inputs, tissue), RememberingTissue(correction=self.correction, **memory)
+        alike = all(np.shape(inputs[name])[-1:] in ((), (1,)) for name in _STIFFENED)
+        return at_frequency(inputs, tissue), RememberingTissue(
+            correction=self.correction, terms=self.terms if alike else None, **memory
+        )
 
 
 def prepare(
@@ -77,7 +84,7 @@ def prepare(
             accuracy=f"{slow}a table of films cannot be used while {' and '.join(varying)} "
             f"{'varies' if len(varying) == 1 else 'vary'}.",
         )
-    held, strength, places = _at_corners(ranges, theory.substrate)
+    held, growth, strength, places = _at_corners(ranges, theory.substrate)
     films = film_plan(held, ranges, tables, theory)
     table = kept_films(films, progress, cores)
     plan = MemoryPlan(films, substrate=theory.substrate, largest_strength=strength, places=places)
@@ -90,7 +97,7 @@ def prepare(
         ),
     )
     assert correction is not None
-    tabulated = RememberingStribeck(table, names, False, correction)
+    tabulated = RememberingStribeck(table, names, False, correction, _terms(table, growth))
     middle, far, worst = (100 * float(error) for error in correction.held_out)
     of_ball = (
         " What memory adds to friction under the ball is taken from its cylinder, an approximation that these numbers do not "
@@ -101,10 +108,10 @@ def prepare(
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
         abscissa=tabulated.abscissa,
-        accuracy=f"Friction is read from a table of films of a {theory.contact} contact at the moduli of the frequency v/b, with a "
-        f"correction for the memory of the tissue; at {correction.held_out_count} places that they were not made from it differs "
-        f"from the film solver of a cylinder by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and {worst:.2g} % "
-        "at worst. Beyond the table, which holds each prior but for 0.001 % on either side, parameters count as impossible."
+        accuracy=f"Friction is read from a table of films of a {theory.contact} contact at the moduli of the frequency v/b, with "
+        f"a correction for the memory of the tissue; at {correction.held_out_count} places that they were not made from it "
+        f"differs from the film solver of a cylinder by {middle:.2g} % in the median, {far:.2g} % at the 99th percentile and "
+        f"{worst:.2g} % at worst. Beyond the table, which holds all but the tails of the priors, parameters count as impossible."
         + (of_ball if theory.contact == POINT else ""),
     )
     return with_profile(fast)
@@ -112,8 +119,8 @@ def prepare(
 
 def _at_corners(
     ranges: Ranges, substrate: str
-) -> tuple[dict[str, tuple[float, float]], float, tuple[float, float]]:
-    """Ranges of the parameters of the films with moduli at v/b, the largest strength, and the range of the place.
+) -> tuple[dict[str, tuple[float, float]], list[float], float, tuple[float, float]]:
+    """Ranges of the parameters of the films with moduli at v/b, by how much each of the two rises (ln), and the ranges of memory.
 
     Moduli at v/b, strength and Deborah number are monotonic in each input, so that they are largest and smallest at corners.
     """
@@ -129,26 +136,37 @@ def _at_corners(
     fixed = {"poisson_ratio_bulk": np.asarray(ranges["poisson_ratio_bulk"][0])}
     tissue = tissue_of({**dict(zip(enter, corners, strict=True)), **fixed}, substrate)
     held = {name: ranges[name] for name in HELD if name in ranges}
-    for name, found in (
-        ("young_modulus_layer", tissue.log_modulus_layer),
-        ("young_modulus_bulk", tissue.log_modulus_bulk),
-    ):
-        held[name] = _stiffened(ranges[name], found - np.log(corners[enter.index(name)]))
+    rise = []
+    for name, found in zip(_STIFFENED, (tissue.log_modulus_layer, tissue.log_modulus_bulk), strict=True):
+        growth = found - np.log(corners[enter.index(name)])
+        held[name] = _stiffened(ranges[name], growth)
+        rise.append(float(np.ptp(growth)))
     largest = max(float(tissue.strength.max()), _WEAKEST)
     if substrate != STANDARD_LINEAR_SOLID:
-        return held, largest, (0.0, 0.0)
-    return held, largest, (float(tissue.place.min()) - _SPARE, float(tissue.place.max()) + _SPARE)
+        return held, rise, largest, (0.0, 0.0)
+    return held, rise, largest, (float(tissue.place.min()) - _SPARE, float(tissue.place.max()) + _SPARE)
 
 
 def _stiffened(given: tuple[float, float], growth: FloatArray) -> tuple[float, float]:
     """Range of a modulus at v/b, Pa, from its own range and ln of what it is multiplied by there.
 
-    The tail of the prior and the fastest, most relaxing contact hardly meet: both ends reach as far as the root of the sum of the
-    squares of the two. Where one of them does not vary it is their sum.
+    The tail of the prior and the fastest, most relaxing contact hardly meet: beyond the middle of the range an end reaches as
+    far as the root of the sum of the squares of the two, which is both together where one of them does not vary.
     """
     low, high = np.log(given)
+    middle, half = (low + high) / 2, (high - low) / 2
     least, most = float(growth.min()), float(growth.max())
+    down = float(np.hypot(half, least)) if least < 0 else half - least
+    up = float(np.hypot(half, most)) if most > 0 else half + most
     spare = _SPARE if most > least else 0.0
-    middle, shift = (low + high) / 2, (least + most) / 2
-    reach = float(np.hypot((high - low) / 2, (most - least) / 2)) + spare
-    return float(np.exp(middle + shift - reach)), float(np.exp(middle + shift + reach))
+    return float(np.exp(middle - down - spare)), float(np.exp(middle + up + spare))
+
+
+def _terms(table: FilmTable, growth: list[float]) -> int:
+    """Terms that suffice, to 1e-4 of ln of the films, along the axis whose rows differ by no more than moduli rise."""
+    if not table.axes.names:
+        return 1
+    half = sum(
+        abs(factor) * rise / 2 for factor, rise in zip(table.axes.combination[0, :2], growth, strict=True)
+    )
+    return 3 + int(np.ceil(15 * half))

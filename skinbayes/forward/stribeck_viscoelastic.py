@@ -1,9 +1,10 @@
-"""Forward model ``stribeck`` on skin that is not elastic: speed and viscosity act apart, and the tissue dissipates (Sect. 6.2)."""
+"""Forward model ``stribeck`` on skin that relaxes: speed and viscosity act apart, and the tissue dissipates (Sect. 6.2)."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -82,7 +83,7 @@ def on_viscoelastic_skin(elastic: ForwardModel, theory: Theory) -> ForwardModel:
         why_needed=dict.fromkeys(needed, _APART),
     )
     names = bare.input_names()
-    chosen = {"theory": theory, "names": names}
+    chosen: dict[str, Any] = {"theory": theory, "names": names}
     model = replace(
         bare,
         evaluate=partial(_evaluate, **chosen),

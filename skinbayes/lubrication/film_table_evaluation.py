@@ -49,7 +49,6 @@ class TabulatedFriction(NamedTuple):
     boundary : shear stress of the areas of real contact, dimensionless
     couette : shear flow of the liquid, dimensionless
     pressure_flow : pressure flow of the liquid, dimensionless
-    hysteresis : loss of the tissue, dimensionless; 0 if it is elastic
     asperity_load_fraction : fraction of the load that asperities carry, dimensionless; nan if not asked for
     minimum_film : smallest mean separation, m; nan if not asked for
     central_film : mean separation under the middle of the ball, m; nan if not asked for
@@ -57,13 +56,13 @@ class TabulatedFriction(NamedTuple):
     outside_table : the table does not hold the parameters, or λ is above 2e4
     too_strained : b/Rc is above the largest strain
     film_beyond_ball : 3π ηv/f_N is above the thickest film
+    hysteresis : friction of the loss of the tissue, dimensionless; 0 if it is elastic
     """
 
     friction_coefficient: FloatArray
     boundary: FloatArray
     couette: FloatArray
     pressure_flow: FloatArray
-    hysteresis: FloatArray
     asperity_load_fraction: FloatArray
     minimum_film: FloatArray
     central_film: FloatArray
@@ -71,6 +70,7 @@ class TabulatedFriction(NamedTuple):
     outside_table: BoolArray
     too_strained: BoolArray
     film_beyond_ball: BoolArray
+    hysteresis: FloatArray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -225,7 +225,10 @@ def _tabulated(
         whole_rows = [np.broadcast_to(x, shape) for x in others]
         memory = [np.broadcast_to(x, (vectors, x.shape[-1] if x.ndim else 1)) for x in memory]
         held = table.coefficients.shape[-1] * (max(rows, 1) if any(x.shape[1] > 1 for x in logs) else 1)
-        step = max(1, min(_POINTS // max(rows, 1), _COEFFICIENTS // held))
+        pieces = _COEFFICIENTS // (
+            1 if tissue is None else 4
+        )  # a correction is as large again, and smooth films are beside it
+        step = max(1, min(_POINTS // max(rows, 1), pieces // held))
         parts = [
             _part(
                 table,
@@ -253,7 +256,7 @@ def _part(
     if balls.tissue is None:
         films = contract(table, logs, 6 if balls.everything else 4)
     else:
-        films = contract_remembering(table, balls.tissue.correction, logs, memory)
+        films = contract_remembering(table, balls.tissue, logs, memory)
     log_speed = np.maximum(np.log(speed), _STILL)
     log_shift = np.where(shift > 0, np.log(shift), np.nan)
     if liquids is None:
@@ -302,7 +305,6 @@ def _friction(
         boundary,
         couette,
         pressure,
-        hysteresis,
         np.minimum(np.exp(logs[FRACTION]), 1.0) + missing if balls.everything else nothing,
         np.exp(logs[MINIMUM] + scales.height) + missing if balls.everything else nothing,
         np.exp(logs[CENTRAL] + scales.height) + missing if balls.everything else nothing,
@@ -310,4 +312,5 @@ def _friction(
         ~held,
         np.broadcast_to(strained, good.shape),
         beyond,
+        hysteresis,
     )

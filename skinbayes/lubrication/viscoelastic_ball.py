@@ -28,8 +28,8 @@ def viscoelastic_ball_curve(
     """The curve of the elastic ball of the same |E| at v/b, each part times that of the viscoelastic over the elastic cylinder.
 
     An approximation: the cylinders are compared at 0.8 of the speed times viscosity, where they carry as much on the film. The
-    hysteresis is that of the cylinder times 0.663, as everywhere. Arguments are those of `viscoelastic_stribeck_curve`, of one speed,
-    m/s, and viscosities, Pa s, shape ``(K,)``.
+    hysteresis is that of the cylinder times 0.663, as everywhere. Arguments are those of `viscoelastic_stribeck_curve`, of one
+    speed, m/s, and viscosities, Pa s, shape ``(K,)``.
     """
     viscosities = np.atleast_1d(np.asarray(viscosity, dtype=np.float64))
     given = {"normal_force": ball["normal_force"], "sphere_radius": ball["sphere_radius"]}

@@ -19,7 +19,6 @@ NARROWEST = 1e-6
 
 _TURN = 3.0  # ln of the Deborah number over which its axis bends towards the elastic limits at both ends
 _SLACK = 1e-9
-_LOCAL = 5  # terms between the moduli that the rows of a vector meet, which differ by little
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,12 +62,14 @@ class RememberingTissue:
     ----------
     correction : `MemoryCorrection`
     strength, place, loss : of `TissueInContact`, dimensionless, scalars or of shape ``(B, 1)``, ``(N,)`` or ``(B, N)``
+    terms : that suffice between the moduli which the rows of a vector meet, where these differ by little; None for all
     """
 
     correction: MemoryCorrection
     strength: ArrayLike
     place: ArrayLike
     loss: ArrayLike
+    terms: int | None = None
 
 
 def bent(place: FloatArray) -> FloatArray:
@@ -83,12 +84,13 @@ def unbent(axis: FloatArray) -> FloatArray:
 
 def contract_remembering(
     table: FilmTable,
-    correction: MemoryCorrection,
+    tissue: RememberingTissue,
     log_parameters: Sequence[FloatArray],
     memory: Sequence[FloatArray],
 ) -> ContractedFilms:
     """`contract` with all outputs and the hysteresis, for tissue with strength, place and loss, ``(B, 1)`` or ``(B, N)`` each."""
-    films = contract(table, log_parameters, HYSTERESIS, local=_LOCAL)
+    correction = tissue.correction
+    films = contract(table, log_parameters, HYSTERESIS, local=tissue.terms)
     strength, place, loss = memory
     scaled = correction.coordinates(strength, place)
     inside = films.inside

@@ -1,8 +1,8 @@
 """What tissue remembers of a contact that passes, in the units of the contact, and which moduli it has there.
 
 A kernel in these units depends on few numbers. For a standard linear solid they are Δ = E_g/E∞ − 1 and the Deborah number vτ/b,
-for a constant loss angle it is the power n of ``E ∝ (iω)^n`` alone. Tables take ``strength``, ln(1 + Δ) or n, which is 0 for elastic
-tissue, and ``place``, ln of vτ√(1 + Δ)/b, which is 0 where tan δ is largest; it is 0 of a constant loss angle.
+for a constant loss angle it is the power n of ``E ∝ (iω)^n`` alone. Tables take ``strength``, ln(1 + Δ) or n, which is 0 for
+elastic tissue, and ``place``, ln of vτ√(1 + Δ)/b, which is 0 where tan δ is largest; it is 0 of a constant loss angle.
 """
 
 from __future__ import annotations

@@ -158,13 +158,15 @@ def passage_under_ball(
     material: ViscoelasticMaterial, speed: float, *, normal_force: float, sphere_radius: float
 ) -> Passage:
     """Scales of a ball at v, m/s, under F_N, N, with R, m; modulus at v/a and contact radius a belong to each other."""
-    return passage_of(
+    scales = passage_of(
         material,
         speed,
         lambda modulus: float(
             sphere_contact(normal_force, sphere_radius, reduced_modulus=modulus).contact_radius
         ),
     )
+    assert isinstance(scales, Passage)  # of a material of relaxation times
+    return scales
 
 
 def passing(grid: PointGrid, scales: Passage) -> PointGrid:

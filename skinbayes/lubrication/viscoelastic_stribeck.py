@@ -9,10 +9,12 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.area import relative_contact_area
+from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.correction import AREA_CORRECTION
 from skinbayes.contact.layered import LayeredSkin
 from skinbayes.contact.line_contact import EquivalentCylinder, cylinder_of_sphere, line_contact
 from skinbayes.contact.variance import twice_stress_variance
+from skinbayes.contact.viscoelastic import ViscoelasticMaterial
 from skinbayes.contact.viscoelastic_line_contact import modulus_in_contact
 from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 from skinbayes.errors import InputError
@@ -134,6 +136,12 @@ def viscoelastic_stribeck_curve(
     """
     if contact not in CONTACTS:
         raise InputError(f"contact is {contact!r:.60}, but must be {' or '.join(map(repr, CONTACTS))}.")
+    tissue = skin.bulk
+    if contact == POINT and isinstance(tissue, ConstantLossMaterial):
+        raise InputError(
+            "contact is 'point', but tissue of constant loss angle in closed form is known under a cylinder only; expected "
+            "'line', or a tissue of relaxation times such as that of constant_loss_solid."
+        )
     given = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (speed, viscosity)))
     shape = given[0].shape
     speeds, viscosities = (np.atleast_1d(x) for x in given)
@@ -167,13 +175,13 @@ def viscoelastic_stribeck_curve(
         film: dict[str, Any] = {"asperities": law_of_table(*table), "flow_factors": flow_factors}
         total = normal_force
         films: ViscoelasticFilms | ViscoelasticPointFilms
-        if contact == POINT:
+        if contact == POINT and isinstance(tissue, ViscoelasticMaterial):
             films = viscoelastic_point_films(
                 speeds[solved],
                 shifted[solved],
                 normal_force=normal_force,
                 sphere_radius=sphere_radius,
-                material=skin.bulk,
+                material=tissue,
                 cells=cells,
                 **film,
             )
@@ -232,7 +240,7 @@ def _contact(
     def half_width_of(modulus: float) -> float:
         return float(line_contact(*cylinder_on(modulus), reduced_modulus=modulus).half_width)
 
-    if contact == POINT:
+    if contact == POINT and isinstance(skin.bulk, ViscoelasticMaterial):
         ball = passage_under_ball(skin.bulk, speed, normal_force=force, sphere_radius=radius)
         cylinder = cylinder_on(ball.modulus)
         return (

@@ -44,7 +44,7 @@ from skinbayes.lubrication.viscoelastic_correction import (
 from skinbayes.lubrication.viscoelastic_memory import STANDARD_LINEAR_SOLID, passage_in_contact
 from skinbayes.lubrication.viscoelastic_stribeck import SPHERE_OVER_CYLINDER
 
-VERSION = 1
+VERSION = 2
 """Of what the numbers in a correction mean; those of another version are built anew."""
 
 _EVERY = 2  # of the speeds of the table at which the correction is solved
@@ -136,7 +136,8 @@ def build_memory_correction(
     nodes = [*product(*(zeros(count).tolist() for count in plan.nodes))]
     places = axes.representative(np.array(nodes).reshape(len(nodes), len(axes.names)))
     grid = np.linspace(SLOWEST, FASTEST, plan.films.speeds)
-    fine = SLOWEST + (FASTEST - SLOWEST) / (plan.films.speeds - 1) * np.arange(plan.films.speeds + _BEYOND)
+    step = (FASTEST - SLOWEST) / (plan.films.speeds - 1)
+    fine = np.asarray(SLOWEST + step * np.arange(plan.films.speeds + _BEYOND), dtype=np.float64)
     few = fine[::_EVERY]
     total = (len(kernels) + 2) * len(places) + len(kernels) + 1 + plan.checked
     with Tasks(processes, total, progress, kept) as solve:
@@ -191,7 +192,7 @@ def build_memory_correction(
 def _similar(found: FloatArray, elastic: FloatArray, fine: FloatArray, grid: FloatArray) -> FloatArray:
     """What is added to the anchors and outputs of M cylinders, shape ``(M, 2 + 7 (S + 2))``, at speeds of equal load fractions.
 
-    Relative outputs are those of tissue that remembers, ``(M, 7, F)``, and of elastic one, ``(M, 6, F)``, at speeds of the latter.
+    Relative outputs are those of tissue that remembers, ``(M, 7, F)``, and of elastic one, ``(M, 6, F)``, at its speeds.
     """
     similar = similar_speeds(found, fine, elastic, fine, (HALF, FAINT))
     residual = np.empty((*found.shape[:2], grid.size))

@@ -14,10 +14,13 @@ from skinbayes.contact import (
     ViscoelasticSkin,
     constant_loss_solid,
     indentation_cycle,
-    indentation_force_at_rate,
+    standard_linear_solid,
+)
+from skinbayes.contact.indentation_loss import (
     loss_fraction_of_constant_loss,
     loss_fraction_of_relaxation,
-    standard_linear_solid,
+    stiffening_of_constant_loss,
+    stiffening_of_relaxation,
 )
 from skinbayes.contact.viscoelastic_line_contact import passage
 from skinbayes.lubrication import (
@@ -236,7 +239,9 @@ def test_friction_from_the_table_is_that_of_the_solver(tables) -> None:  # type:
             ),
         )
         for name in ("friction_coefficient", "hysteresis", "central_film", "minimum_film", "couette"):
-            assert_allclose(getattr(found, name), getattr(direct, name), rtol=0.01, err_msg=name)
+            # few nodes; of the hysteresis, which is a small part, a little less is asked
+            tolerance = 0.02 if name == "hysteresis" else 0.01
+            assert_allclose(getattr(found, name), getattr(direct, name), rtol=tolerance, err_msg=name)
         assert_allclose(found.boundary, direct.boundary, atol=0.01 * direct.friction_coefficient.max())
 
 
@@ -290,14 +295,13 @@ def test_loss_of_indentation_for_many_materials() -> None:
         solid = standard_linear_solid(1.0, 1 + strength, relaxation_time=ratio)
         cycle = indentation_cycle(1.0, 1.0, sphere_radius=1.0, material=solid)
         assert_allclose(loss_fraction_of_relaxation(strength, ratio), cycle.loss_fraction, atol=2e-3)
-        assert_allclose(
-            indentation_force_at_rate(1.0, 1.0, sphere_radius=1.0, material=solid),
-            cycle.force.max(),
-            rtol=0.15,
-        )
+        stiffer = stiffening_of_relaxation(np.asarray(strength), np.asarray(1 / ratio))
+        assert_allclose(4 / 3 / 0.75 * stiffer, cycle.force[400], rtol=1e-8)
         fractional = ConstantLossMaterial(modulus=1.0, tan_delta=tangent, reference_frequency=1.0)
         cycle = indentation_cycle(3.0, 2.0, sphere_radius=0.5, material=fractional)
         assert_allclose(loss_fraction_of_constant_loss(tangent), cycle.loss_fraction, atol=2e-6)
+        stiffer = stiffening_of_constant_loss(np.asarray(tangent), np.asarray(2.0 / 3.0))
+        assert_allclose(4 / 3 / 0.75 * np.sqrt(0.5) * 2**1.5 * stiffer, cycle.force[400], rtol=1e-9)
     assert np.isnan(loss_fraction_of_constant_loss([-0.1, 1.0])).all()
     assert np.isnan(loss_fraction_of_relaxation([-0.1, 200.0], 1.0)).all()
 
