@@ -17,8 +17,8 @@ def modulus_under_ball(
 
     The uppermost layer, stratum corneum, is taken to be far thinner than the contact is wide and left out: it bends with what
     lies below. So it is `contact_modulus` of one layer, and of `StackedSkin` that of `layered_sphere_contact` with the others,
-    which may be as thick as the contact is wide. With it in Hertz's formulas contact radius and mean pressure are right; the pressure
-    profile is that of a half-space.
+    which may be as thick as the contact is wide. With it in Hertz's formulas contact radius and mean pressure are right; the
+    pressure profile is that of a half-space.
 
     Parameters
     ----------
