@@ -45,7 +45,7 @@ class Innovations:
         Examples
         --------
         >>> memory = Innovations(scales=(0,), length=1, gap=1.5)
-        >>> np.exp(memory.log_share(np.array([1e-9, 6.7]), 0.0)).round(3)
+        >>> np.exp(memory.log_share(np.array([1e-9, 6.7]), 0.0)).round(2)
         array([1. , 0.6])
         """
         log_memory = np.log1p(-np.asarray(independent)) - self.gap / length
