@@ -67,6 +67,7 @@ def curve(force: float, area: float, length: float) -> dict[str, float]:
 
 
 def main() -> None:
+    """Print the tables."""
     argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     ).parse_args()
