@@ -6,6 +6,7 @@ Prints ηv at half of the plateau, the minimum, and friction and film far above 
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -20,8 +21,8 @@ SURFACE = named_surface("paper_reference")
 SKIN = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=50e3, layer_thickness=173e-6)
 STRESS = 10e6
 PADS = ((0.3, 200e-6), (1.0, 200e-6), (3.0, 200e-6))
-LENGTHS = (0.2, 0.3, 0.5, 1.0, 2.0, 5.0)
-CELLS = 500
+LENGTHS = (0.2, 0.5, 2.0, 5.0)
+CELLS = 400
 
 
 @contextmanager
@@ -31,12 +32,7 @@ def flatter_pressure() -> Iterator[None]:
 
     def fourth(self, grid, law, *positional, **named):  # type: ignore[no-untyped-def]
         plain(self, grid, law, *positional, **named)
-        inside = grid.radius < 0.9
-        pressure = 5 / 9 * (1 + 2 * grid.radius**2) * np.sqrt(np.maximum(1 - grid.radius**2, 0.0))
-        deflection = grid.kernel @ pressure
-        fourth_power = grid.radius**4
-        slope = np.polyfit(fourth_power[inside], -deflection[inside], 1)[0]
-        self._parabola = slope * fourth_power
+        self._parabola = 5 / 16 * grid.radius**4
 
     point_newton.PointSolver.__init__ = fourth  # type: ignore[method-assign]
     try:
@@ -72,6 +68,9 @@ def curve(force: float, area: float, length: float) -> dict[str, float]:
 
 def main() -> None:
     """Print the tables."""
+    argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    ).parse_args()
     for force, area in PADS:
         radius = np.sqrt(area / np.pi)
         ball = float(sphere_of_contact(force, radius, reduced_modulus=float(SKIN.contact_modulus)))
@@ -83,13 +82,10 @@ def main() -> None:
             ratios = "  ".join(f"{name} {found[name] / reference[name]:.3f}" for name in found)
             print(f"inlet {length:g} a   {ratios}")
         with flatter_pressure():
-            for length in (0.5, 1.0):
-                found, plain = curve(force, area, length), reference if length == 1.0 else None
-                plain = plain or reference
-                print(
-                    f"flatter pressure, inlet {length:g} a   "
-                    + "  ".join(f"{n} {found[n] / plain[n]:.3f}" for n in found)
-                )
+            found = curve(force, area, 1.0)
+        print(
+            "flatter pressure   " + "  ".join(f"{name} {found[name] / reference[name]:.3f}" for name in found)
+        )
 
 
 if __name__ == "__main__":

@@ -56,9 +56,9 @@ class FilmTablePlan:
     nodes : places across the contact, dimensionless; with 96 friction is within 0.2 % of that on many more
     checked : number of random places, dimensionless, at which the table is compared with direct solutions
     cells : of half a point contact, dimensionless
-    largest_strain : b/Rc, dimensionless, that the table has to reach
-    inlet_length : distance from a point contact, m, at which liquid and drag end; None for liquid without end
     flow_factors : "none", "patir-cheng", or "gap" from the statistics of the gaps
+    inlet_length : distance from a point contact, m, at which liquid and drag end; None for liquid without end
+    largest_strain : b/Rc, dimensionless, that the table has to reach
 
     References
     ----------
@@ -85,9 +85,9 @@ class FilmTablePlan:
     nodes: int = 96
     checked: int = 120
     cells: int = 400
-    largest_strain: float = LARGEST_STRAIN
-    inlet_length: float | None = None
     flow_factors: str = "none"
+    inlet_length: float | None = None
+    largest_strain: float = LARGEST_STRAIN
 
     def __post_init__(self) -> None:
         if self.contact not in CONTACTS:

@@ -64,7 +64,7 @@ def test_a_pad_needs_areas_and_an_inlet(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="sphere_radius"):
         load_problem(write(tmp_path, parameters='inlet_length = "3 mm"\nsphere_radius = "1 cm"'))
     varied = load_problem(write(tmp_path, parameters='inlet_length = { lognormal = ["3 mm", 0.5] }'))
-    with pytest.raises(InputError, match=r"inlet_length goes from .* but has to be one fixed length"):
+    with pytest.raises(InputError, match="inlet_length goes from"):
         varied.prepare()
 
 

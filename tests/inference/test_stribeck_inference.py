@@ -211,7 +211,7 @@ def test_a_prediction_for_other_rows_needs_their_liquid(problem: Problem, tmp_pa
     "name",
     [
         "finger-stribeck", "finger-stribeck-free-roughness", "finger-stribeck-shift", "finger-stribeck-additive",
-        "finger-stribeck-covariates",
+        "finger-stribeck-covariates", "finger-stribeck-pad",
     ],
 )  # fmt: skip
 def test_finger_models_share_everything_but_their_hypothesis(name: str) -> None:
