@@ -70,7 +70,8 @@ def loss_fraction_of_relaxation(relaxation_strength: ArrayLike, time_ratio: Arra
         held = np.clip(place, -_FAR, _FAR)
         scaled = 2 * fast / np.log(1 + LARGEST_RELAXATION_STRENGTH) - 1, held / np.hypot(_TURN, held) / _END
         good = (strength >= 0) & (np.abs(scaled[0]) <= 1 + 1e-12) & np.isfinite(place)
-        relative = chebval2d(*(np.where(good, x, 0.0) for x in scaled), _per_sine())
+        along, across = (np.where(good, x, 0.0) for x in scaled)
+        relative = chebval2d(along, across, _per_sine())
         return np.asarray(np.where(good, np.exp(relative) * _sine(strength, ratio), np.nan))[()]
 
 
