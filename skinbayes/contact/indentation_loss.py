@@ -68,10 +68,10 @@ def loss_fraction_of_relaxation(relaxation_strength: ArrayLike, time_ratio: Arra
         fast, time = np.log(1 + strength), np.log(ratio)
         place = time + fast / 2
         held = np.clip(place, -_FAR, _FAR)
-        first = 2 * fast / np.log(1 + LARGEST_RELAXATION_STRENGTH) - 1
-        good = (strength >= 0) & (np.abs(first) <= 1 + 1e-12) & np.isfinite(place)
-        second = np.where(good, held / np.hypot(_TURN, held) / _END, 0.0)
-        relative = chebval2d(np.where(good, first, 0.0), second, _per_sine())
+        scaled = 2 * fast / np.log(1 + LARGEST_RELAXATION_STRENGTH) - 1, held / np.hypot(_TURN, held) / _END
+        good = (strength >= 0) & (np.abs(scaled[0]) <= 1 + 1e-12) & np.isfinite(place)
+        along, across = (np.where(good, x, 0.0) for x in scaled)
+        relative = chebval2d(along, across, _per_sine())
         return np.asarray(np.where(good, np.exp(relative) * _sine(strength, ratio), np.nan))[()]
 
 

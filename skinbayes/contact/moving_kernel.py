@@ -112,7 +112,7 @@ def power_law_kernel(position: FloatArray, power: float) -> MovingKernel:
     >>> nodes = np.linspace(0.0, 1.0, 5)
     >>> ends = [(-np.pi * power_law_kernel(nodes, n).deflection.sum(axis=1))[[0, -1]] for n in (0.0, 0.1)]
     >>> print(np.diff(ends[0]).round(6), np.diff(ends[1]).round(3))
-    [0.] [0.463]
+    [0.] [0.475]
     """
     offset = position[:, None] - position
     if power < _SMALLEST_POWER:

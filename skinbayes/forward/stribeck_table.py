@@ -218,6 +218,7 @@ def prepare(
         abscissa=tabulated.abscissa,
         accuracy=f"Friction is read from a table of films of a {theory.contact} contact; at {table.held_out_count} places that "
         f"it was not made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th "
-        f"percentile and {worst:.2g} % at worst. Beyond the table, which holds each prior but for 0.001 % on either side, "
-        "parameters count as impossible.",
+        f"percentile and {worst:.2g} % at worst. Beyond the table"
+        + ("" if theory.contact == PAD else ", which holds each prior but for 0.001 % on either side,")
+        + " parameters count as impossible.",
     )
