@@ -11,7 +11,7 @@ from skinbayes.contact.stacked_skin import StackedSkin
 
 
 def modulus_under_ball(
-    skin: ElasticSolid, *, normal_force: ArrayLike, sphere_radius: ArrayLike
+    normal_force: ArrayLike, sphere_radius: ArrayLike, *, skin: ElasticSolid
 ) -> FloatArray:
     """Plane-strain modulus of the half-space on which a ball has the contact radius that it has on the skin.
 
@@ -22,9 +22,9 @@ def modulus_under_ball(
 
     Parameters
     ----------
-    skin : moduli in Pa, lengths in m, any batch shape
-    normal_force : F_N, N, > 0, broadcasts
+    normal_force : F_N, N, > 0, any batch shape
     sphere_radius : R, m, > 0, broadcasts
+    skin : moduli in Pa, lengths in m, broadcasts
 
     Returns
     -------
@@ -44,7 +44,7 @@ def modulus_under_ball(
     Examples
     --------
     >>> skin = StackedSkin(young_moduli=[7e6, 80e3, 15e3], thicknesses=[20e-6, 1.2e-3])
-    >>> print(modulus_under_ball(skin, normal_force=[0.02, 2.0], sphere_radius=8e-3).round(-2))
+    >>> print(modulus_under_ball([0.02, 2.0], 8e-3, skin=skin).round(-2))
     [70300. 25600.]
     """
     if not isinstance(skin, StackedSkin):

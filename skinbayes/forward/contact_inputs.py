@@ -150,9 +150,7 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
 
 def modulus_under_ball_of(inputs: Inputs) -> FloatArray:
     """Return the plane-strain modulus [Pa] that gives the contact of the ball of ``inputs`` on their solid, Hertz."""
-    return modulus_under_ball(
-        skin_of(inputs), normal_force=inputs["normal_force"], sphere_radius=inputs["sphere_radius"]
-    )
+    return modulus_under_ball(inputs["normal_force"], inputs["sphere_radius"], skin=skin_of(inputs))
 
 
 def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

@@ -121,7 +121,7 @@ def stribeck_curve_of_liquid(
             f"sliding_speed {wrong[0] + 1} is {speed[wrong[0]]:g} m/s, but must be a finite number >= 0 m/s."
         )
     liquids = liquid_rows([flow_curve]).at(np.zeros(speed.size, dtype=np.intp))
-    modulus = float(modulus_under_ball(skin, normal_force=normal_force, sphere_radius=sphere_radius))
+    modulus = float(modulus_under_ball(normal_force, sphere_radius, skin=skin))
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     law = law_of_table(*table) if is_lawful(*table) else None
 

@@ -51,12 +51,12 @@ class FilmTablePlan:
     poisson_ratio_layer, poisson_ratio_bulk : ν0, ν1, dimensionless; ν1 is that of a homogeneous solid
     contact : "point", the ball as it is, or "line", the cylinder of Eq. 9 of the paper
     area_correction : γ, dimensionless, 0 < γ ≤ 1
+    flow_factors : "none", "patir-cheng", or "gap" from the statistics of the gaps
     counts : nodes of an axis, dimensionless, by its name; see `film_axes`
     speeds : number of speeds, dimensionless
     nodes : places across the contact, dimensionless; with 96 friction is within 0.2 % of that on many more
     checked : number of random places, dimensionless, at which the table is compared with direct solutions
     cells : of half a point contact, dimensionless
-    flow_factors : "none", "patir-cheng", or "gap" from the statistics of the gaps
     inlet_length : distance from a point contact, m, at which liquid and drag end; None for liquid without end
     largest_strain : b/Rc, dimensionless, that the table has to reach
 
@@ -80,12 +80,12 @@ class FilmTablePlan:
     poisson_ratio_bulk: float = 0.5
     contact: str = POINT
     area_correction: float = AREA_CORRECTION
+    flow_factors: str = "none"
     counts: Mapping[str, int] | None = None
     speeds: int = 31
     nodes: int = 96
     checked: int = 120
     cells: int = 400
-    flow_factors: str = "none"
     inlet_length: float | None = None
     largest_strain: float = LARGEST_STRAIN
 

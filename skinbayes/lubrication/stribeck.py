@@ -188,7 +188,7 @@ def stribeck_curve(
     given = np.asarray(speed_viscosity_product, dtype=np.float64)
     products = np.atleast_1d(given)
     twice_variance = twice_stress_variance(spectrum, skin)
-    modulus = modulus_under_ball(skin, normal_force=normal_force, sphere_radius=sphere_radius)
+    modulus = modulus_under_ball(normal_force, sphere_radius, skin=skin)
     table = asperity_table(spectrum, skin, area_correction=area_correction)
     case = (normal_force, sphere_radius, frictional_shear_stress, area_correction, velocity_shift_factor,
             twice_variance, modulus)  # fmt: skip

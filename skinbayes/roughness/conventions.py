@@ -12,7 +12,7 @@ class Convention(NamedTuple):
 
     Attributes
     ----------
-    dimensions : 2 of an area, 1 of line profiles
+    dimensions : 2 of an area, 1 of line profiles, dimensionless
     times : its values over those of `TabulatedSpectrum` (two-dimensional) or of ``TabulatedSpectrum.from_profile``,
         dimensionless
     variance : the mean square height as an integral over wavevectors q > 0, for people

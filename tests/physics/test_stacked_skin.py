@@ -134,14 +134,14 @@ def test_what_a_ball_meets():
     """The stratum corneum is left out; equal layers are one; a thick layer is all there is."""
     ball = {"normal_force": np.array([0.05, 0.2]), "sphere_radius": 8e-3}
     one = LayeredSkin(young_modulus_layer=7e6, young_modulus_bulk=20e3, layer_thickness=20e-6)
-    assert modulus_under_ball(one, **ball) == one.contact_modulus
+    assert modulus_under_ball(**ball, skin=one) == one.contact_modulus
     same = StackedSkin(young_moduli=[7e6, 20e3, 20e3], thicknesses=[20e-6, 1e-3])
-    assert modulus_under_ball(same, **ball) == pytest.approx(20e3 / 0.75, rel=1e-8)
+    assert modulus_under_ball(**ball, skin=same) == pytest.approx(20e3 / 0.75, rel=1e-8)
     thick = StackedSkin(young_moduli=[7e6, 50e3, 20e3], thicknesses=[20e-6, 10.0])
-    assert modulus_under_ball(thick, **ball) == pytest.approx(50e3 / 0.75, rel=1e-3)
+    assert modulus_under_ball(**ball, skin=thick) == pytest.approx(50e3 / 0.75, rel=1e-3)
     thin = StackedSkin(young_moduli=[7e6, 50e3, 20e3], thicknesses=[20e-6, 1e-3])
-    found = modulus_under_ball(thin, **ball)
+    found = modulus_under_ball(**ball, skin=thin)
     assert (found > 20e3 / 0.75).all() and (found < 50e3 / 0.75).all() and found[0] > found[1]
     batch = StackedSkin(young_moduli=[[7e6, 50e3, 20e3], [7e6, -1.0, 20e3]], thicknesses=[20e-6, 1e-3])
-    both = modulus_under_ball(batch, normal_force=0.05, sphere_radius=8e-3)
+    both = modulus_under_ball(0.05, 8e-3, skin=batch)
     assert both[0] == found[0] and np.isnan(both[1])
