@@ -65,6 +65,7 @@ class ConstantLossMaterial:
 
         Examples
         --------
+        >>> tissue = ConstantLossMaterial(modulus=20e3, tan_delta=0.158, reference_frequency=1.0)
         >>> print(f"{tissue.complex_modulus(1.0):.0f}")
         19755+3121j
         """

@@ -99,7 +99,7 @@ def joint_templates(name: str | Path) -> dict[str, DataTemplate]:
 
 def template_of(spec: ModelSpec) -> DataTemplate:
     """Columns that the data of a validated model need."""
-    forward = forward_model(spec.forward, f"{spec.path}: forward")
+    forward = forward_model(spec.forward, f"{spec.path}: forward").with_options(spec.options)
     notes: list[str] = []
     labels = [
         TemplateColumn(label, None, LABELS.get(label, "label of the row"), why)
