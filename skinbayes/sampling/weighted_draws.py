@@ -149,4 +149,5 @@ def _effective(values: FloatArray, weights: FloatArray) -> FloatArray:
     apart = values - weights @ values / weights.sum()
     variance = weights @ np.square(apart) / weights.sum()
     error = np.square(weights) @ np.square(apart) / weights.sum() ** 2
-    return np.asarray(variance / error)
+    # squares of weights hundreds of powers of ten below the largest are 0: all rests on a single draw
+    return np.divide(variance, error, out=np.ones_like(error), where=error > 0)

@@ -18,7 +18,7 @@ from skinbayes.sampling.evidence import bridge
 from skinbayes.sampling.importance import Refusal, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.store import SampleStore
-from skinbayes.sampling.weighted_draws import ImportanceDraws
+from skinbayes.sampling.weighted_draws import ImportanceDraws, _effective
 from skinbayes.statistics.pareto import pareto_shape, smoothed
 from skinbayes.statistics.student_mixture import StudentMixture, fit_mixture
 
@@ -318,3 +318,12 @@ def test_weighted_quantiles_of_the_draws_are_those_of_the_density():
     np.testing.assert_allclose(
         weighted_quantiles(found.samples[0, :, 0], weights, LEVELS), norm.ppf(LEVELS), atol=0.1
     )
+
+
+def test_weights_that_rest_on_one_draw_are_one_draw() -> None:
+    """Squares of the other weights underflow; the ratio of variances was reached with a RuntimeWarning, and was infinite."""
+    weights = np.array([1.0, 1e-200, 1e-190])
+    tail = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    assert _effective(tail, weights).tolist() == [1.0, 1.0]
+    plain = np.ones(4)
+    assert _effective(np.array([[0.0], [0.0], [1.0], [1.0]]), plain) == pytest.approx([4.0])
