@@ -39,7 +39,7 @@ def plot_comparison(comparison: Comparison, width: str | None = None) -> Figure:
     """
     size = inches(width)
     panels = _panels(comparison)
-    columns = min(len(panels), 3 if size >= SMALL else 2)
+    columns = min(len(panels), 2 if size >= SMALL else 1)
     rows = -(-len(panels) // columns)
     models = comparison.models
     names = [shortened(model.name, 26 if size >= SMALL else 16) for model in models]
@@ -60,7 +60,7 @@ def plot_comparison(comparison: Comparison, width: str | None = None) -> Figure:
             ax.set_title(panel.title, pad=4.0)
             ax.set_ylim(len(models) - 0.5, -0.5)
             ax.set_yticks(places, names)
-            ax.locator_params(axis="x", nbins=4)
+            ax.locator_params(axis="x", nbins=3)
             ax.grid(axis="x")
         for ax in axes[len(panels) :]:
             ax.set_axis_off()
