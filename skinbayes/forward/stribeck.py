@@ -25,13 +25,14 @@ from skinbayes.forward.stribeck_direct import (
     SPEED_ALTERNATIVES,
     Theory,
     curve_of,
+    explain,
     one_by_one,
     solve,
     speed_viscosity_product_of,
 )
 from skinbayes.forward.stribeck_table import prepare
 from skinbayes.forward.stribeck_viscoelastic import on_viscoelastic_skin
-from skinbayes.lubrication import CONTACTS, LARGEST_STRAIN, POINT, REASONS_FOR_NO_PREDICTION, THICKEST_FILM
+from skinbayes.lubrication import CONTACTS, LARGEST_STRAIN, POINT, THICKEST_FILM
 from skinbayes.lubrication.viscoelastic_memory import ELASTIC, SUBSTRATES
 from skinbayes.roughness import rms_slope
 
@@ -50,14 +51,7 @@ def _flags(inputs: Inputs, tables: Tables, theory: Theory) -> dict[str, BoolArra
 
 
 def _explain(inputs: Inputs, tables: Tables, theory: Theory) -> list[str]:
-    """Why points of the curve are missing or doubtful."""
-    found = solve(inputs, tables, MODEL.input_names(), theory)
-    said = []
-    for name, reason in (REASONS_FOR_NO_PREDICTION | FLAGS).items():
-        count, total = int(np.count_nonzero(found[name])), found[name].size
-        if count:
-            said.append(f"{count} of {total} points: {reason}.")
-    return said
+    return explain(solve(inputs, tables, MODEL.input_names(), theory))
 
 
 def _abscissa(inputs: Inputs, tables: Tables, theory: Theory) -> FloatArray:

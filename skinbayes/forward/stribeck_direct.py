@@ -18,6 +18,7 @@ from skinbayes.lubrication import (
     LARGEST_STRAIN,
     NOTABLE_STRAIN,
     POINT,
+    REASONS_FOR_NO_PREDICTION,
     THICKEST_FILM,
     FlowFactors,
     PatirCheng,
@@ -57,6 +58,12 @@ FLAGS = {
 
 SPEED_ALTERNATIVES = (("speed_viscosity_product",), ("viscosity", "sliding_speed"))
 """How the abscissa can be given; the first complete alternative is used."""
+
+REASONS = (
+    "impossible", "too_strained", "film_beyond_ball", "not_converged", "strained", "largely_strained",
+    "shear_rate_unmeasured",
+)  # fmt: skip
+"""Fields of the curve that say where it is silent or doubtful."""
 
 CURVE = "flow_curve"
 """Number of the flow curve of a row, among the inputs."""
@@ -153,14 +160,30 @@ def solve(
         )
     else:
         known.pop("speed_viscosity_product", None)
-        curves = list({id(curve): curve for curve in tables.flow_curves}.values())
-        place = {id(curve): float(i) for i, curve in enumerate(curves)}
-        known[CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
         known["sliding_speed"] = inputs["sliding_speed"]
-        distinct = Tables(tables.spectrum, tuple(curves))
-        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=distinct, theory=theory))
+        known[CURVE], tables = numbered_flow_curves(tables)
+        found = along_rows(known, "sliding_speed", partial(_of_liquids, tables=tables, theory=theory))
     found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
     return found
+
+
+def numbered_flow_curves(tables: Tables) -> tuple[FloatArray, Tables]:
+    """The number of the flow curve of each row, ``(1, N)``, and the tables with each flow curve once."""
+    assert tables.flow_curves is not None
+    curves = {id(curve): curve for curve in tables.flow_curves}
+    place = {name: float(i) for i, name in enumerate(curves)}
+    numbers = np.array([[place[id(curve)] for curve in tables.flow_curves]])
+    return numbers, Tables(tables.spectrum, tuple(curves.values()))
+
+
+def explain(found: dict[str, FloatArray]) -> list[str]:
+    """Why points of a curve that was solved are missing or doubtful."""
+    said = []
+    for name, reason in (REASONS_FOR_NO_PREDICTION | FLAGS).items():
+        count, total = int(np.count_nonzero(found[name])), found[name].size
+        if count:
+            said.append(f"{count} of {total} points: {reason}.")
+    return said
 
 
 def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:
@@ -216,9 +239,7 @@ def one_by_one(inputs: Inputs, count: int) -> list[dict[str, FloatArray]]:
 def _everything(curve: StribeckCurve, inputs: Inputs) -> dict[str, FloatArray]:
     shape = np.shape(curve.friction_coefficient)
     found = {name: np.asarray(getattr(curve, field)) for name, field in FIELDS.items()}
-    reasons = ("impossible", "too_strained", "film_beyond_ball", "not_converged", "strained", "largely_strained",
-               "shear_rate_unmeasured")  # fmt: skip
-    found |= {name: np.asarray(getattr(curve, name), dtype=float) for name in reasons}
+    found |= {name: np.asarray(getattr(curve, name), dtype=float) for name in REASONS}
     column = {name: np.asarray(value)[..., np.newaxis] for name, value in inputs.items()}
     found["strained_beyond_ball"] = np.asarray(curve.strain > LARGEST_STRAIN, dtype=float)[..., np.newaxis]
     flags = film_flags(column, curve.speed_viscosity_product)

@@ -15,10 +15,12 @@ from skinbayes.forward.contact_inputs import spectrum_of
 from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.stribeck_direct import (
     CURVE,
+    REASONS,
     Theory,
     film_flags,
     flow_factors_of,
     limit_of,
+    numbered_flow_curves,
     one_by_one,
 )
 from skinbayes.forward.stribeck_direct import (
@@ -41,11 +43,6 @@ from skinbayes.lubrication.viscoelastic_memory import (
 
 FIELDS = ELASTIC_FIELDS | {"friction_coefficient_hysteresis": "hysteresis"}
 """Observables and the fields of the curve they are."""
-
-_REASONS = (
-    "impossible", "too_strained", "film_beyond_ball", "not_converged", "strained", "largely_strained",
-    "shear_rate_unmeasured",
-)  # fmt: skip
 
 
 def tissue_of(inputs: Inputs, substrate: str) -> TissueInContact:
@@ -74,10 +71,7 @@ def solve(inputs: Inputs, tables: Tables, names: tuple[str, ...], theory: Theory
     known.pop("additive_friction", None)
     if tables.flow_curves is not None:
         known.pop("viscosity", None)
-        curves = list({id(curve): curve for curve in tables.flow_curves}.values())
-        place = {id(curve): float(i) for i, curve in enumerate(curves)}
-        known[CURVE] = np.array([[place[id(curve)] for curve in tables.flow_curves]])
-        tables = Tables(tables.spectrum, tuple(curves))
+        known[CURVE], tables = numbered_flow_curves(tables)
     found = along_rows(known, "sliding_speed", partial(_vectors, tables=tables, theory=theory))
     found["friction_coefficient"] = found["friction_coefficient"] + inputs.get("additive_friction", 0.0)
     return found
@@ -150,7 +144,7 @@ def _everything(
     curve: ViscoelasticStribeckCurve, inputs: Inputs, speed: float, theory: Theory
 ) -> dict[str, FloatArray]:
     found = {name: np.asarray(getattr(curve, field)) for name, field in FIELDS.items()}
-    found |= {name: np.asarray(getattr(curve, name), dtype=float) for name in _REASONS}
+    found |= {name: np.asarray(getattr(curve, name), dtype=float) for name in REASONS}
     found["strained_beyond_ball"] = np.asarray(curve.strain > LARGEST_STRAIN, dtype=float)
     held = at_frequency(inputs, tissue_of({**inputs, "sliding_speed": np.asarray(speed)}, theory.substrate))
     flags = film_flags(held, curve.speed_viscosity_product)

@@ -6,15 +6,12 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_inputs import SKIN_INPUTS
-from skinbayes.forward.stribeck_direct import FLAGS, Theory
+from skinbayes.forward.stribeck_direct import FLAGS, Theory, explain
 from skinbayes.forward.stribeck_remembering import FIELDS, solve, with_profile
 from skinbayes.forward.stribeck_remembering_table import prepare
-from skinbayes.lubrication import REASONS_FOR_NO_PREDICTION
 from skinbayes.lubrication.viscoelastic_memory import (
     CONSTANT_LOSS,
     RELAXATION_PARAMETERS,
@@ -46,14 +43,7 @@ def _flags(inputs: Inputs, tables: Tables, theory: Theory, names: tuple[str, ...
 
 
 def _explain(inputs: Inputs, tables: Tables, theory: Theory, names: tuple[str, ...]) -> list[str]:
-    """Why points of the curve are missing or doubtful."""
-    found = solve(inputs, tables, names, theory)
-    counts = {name: int(np.count_nonzero(found[name])) for name in REASONS_FOR_NO_PREDICTION | FLAGS}
-    return [
-        f"{counts[name]} of {found[name].size} points: {reason}."
-        for name, reason in (REASONS_FOR_NO_PREDICTION | FLAGS).items()
-        if counts[name]
-    ]
+    return explain(solve(inputs, tables, names, theory))
 
 
 def _abscissa(inputs: Inputs, tables: Tables, theory: Theory, names: tuple[str, ...]) -> FloatArray:
