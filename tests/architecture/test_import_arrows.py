@@ -50,6 +50,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
     "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
     "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
+    "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
                   "comparison"},
