@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from skinbayes.atomic import write_atomically
 from skinbayes.errors import InputError
@@ -26,3 +27,21 @@ def write_text(path: Path, text: str) -> None:
     except OSError as error:
         # in the name that the user gave, not in that of the file on its way there
         raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def write_columns(path: Path, columns: Mapping[str, Any]) -> None:
+    """Write columns of equal length as a CSV in SI; nan is an empty cell."""
+    from skinbayes.files.table import csv_text
+    from skinbayes.vocabulary import QUANTITIES
+
+    cells, units = {}, {}
+    for name, values in columns.items():
+        each = values.tolist()
+        cells[name] = [("" if v != v else repr(v)) if isinstance(v, float) else str(v) for v in each]
+        if not isinstance(each[0], str):
+            # NAME_median is of the quantity NAME
+            known = (
+                name if name in QUANTITIES else next((q for q in QUANTITIES if name.startswith(f"{q}_")), "")
+            )
+            units[name] = QUANTITIES[known].unit if known else "1"
+    write_text(path, csv_text(cells, units))

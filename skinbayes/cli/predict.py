@@ -2,27 +2,91 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
 
-from skinbayes.cli.options import json_option, model_argument, set_option, settings_of
+from skinbayes.cli.new_file import refuse_existing, write_columns
+from skinbayes.cli.options import json_option, number_option, overwrite_option, set_option, settings_of
 from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, MOST_ROWS, print_json, print_table, say
+from skinbayes.defaults import SEED
 from skinbayes.errors import InputError
 
 
 @click.command()
-@model_argument
+@click.argument("model", required=False)
 @set_option
 @click.option("--conditions", metavar="FILE.csv", help="Rows to predict instead of the model's own.")
+@click.option("--run", metavar="RUN", help="Predict with the posterior of this run instead of with a model.")
+@click.option(
+    "--probability",
+    "statement",
+    metavar="STATEMENT",
+    help="With --run: how probable 'friction_coefficient < 0.4' is.",
+)
+@click.option(
+    "--along",
+    metavar="COLUMN",
+    help="With --probability: from where to where along this column of the rows it holds.",
+)
+@click.option(
+    "--confidence",
+    default=0.95,
+    show_default=True,
+    type=click.FloatRange(0.0, 1.0, True, True),
+    help="With --along: how surely.",
+)
+@number_option("--seed", SEED, 0, "With --run: seed of scatter and of effects of new people.")
+@click.option("-o", "--output", metavar="FILE.csv", help="Write rows and predictions, SI.")
+@overwrite_option
 @json_option
-def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json: bool) -> int:
-    """Evaluate the forward model at given parameters.
+def predict(
+    model: str | None,
+    pairs: tuple[str, ...],
+    conditions: str | None,
+    run: str | None,
+    statement: str | None,
+    along: str | None,
+    confidence: float,
+    seed: int,
+    output: str | None,
+    overwrite: bool,
+    as_json: bool,
+) -> int:
+    """Evaluate the forward model at given parameters, or with --run at those of a posterior.
 
-    Free parameters that are not set stand at their prior median.
+    Free parameters of a MODEL that are not set stand at their prior median. With --run, predictions are medians and 90 %
+    intervals at the rows of --conditions, of the model and of one measurement more.
 
     A row without a prediction is empty (null in JSON), named on standard error with the reason, and makes the exit status 2.
     """
+    if (model is None) == (run is None):
+        raise InputError(
+            "predict: "
+            + ("found a model and --run" if run else "found neither a model nor --run")
+            + "; expected one of them"
+        )
+    if output is not None:
+        refuse_existing([Path(output)], overwrite)
+    if run is not None:
+        from skinbayes.cli.predict_run import predict_run
+
+        if pairs:
+            raise InputError(
+                "--set: parameters of a run are its posterior draws; expected it with a model only"
+            )
+        return predict_run(run, conditions, statement, along, confidence, seed, output, as_json)
+    if statement is not None or along is not None:
+        raise InputError(
+            "--probability, --along: a model alone has no probabilities; expected them with --run"
+        )
+    return _predict_model(str(model), pairs, conditions, output, as_json)
+
+
+def _predict_model(
+    model: str, pairs: tuple[str, ...], conditions: str | None, output: str | None, as_json: bool
+) -> int:
     from skinbayes.files.joint_model import is_joint
     from skinbayes.problem.load import load_joint_problem, load_problem
 
@@ -41,6 +105,11 @@ def predict(model: str, pairs: tuple[str, ...], conditions: str | None, as_json:
             each[name], lacking = _predicted(one, settings, f"{model}: {name}", as_json)
             missing += [f"{name}: {sentence}" for sentence in lacking]
         document = {"model": joint.name, "experiments": each}
+    if output is not None:
+        for name, one in document.get("experiments", {"": document}).items():
+            file = Path(output).with_stem(f"{Path(output).stem}-{name}") if name else Path(output)
+            write_columns(file, {**one["conditions"], **one["prediction"]})
+            say(f"predictions: {file}", err=as_json)
     if as_json:
         print_json(document)
     for sentence in missing[:_MOST_SENTENCES]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,8 @@ from skinbayes.fit.drawn_fit import DrawnFit
 from skinbayes.fit.netcdf import result_image
 
 if TYPE_CHECKING:
+    from skinbayes.files.dataset import Data
+    from skinbayes.fit.prediction import Prediction
     from skinbayes.problem import Problem
 
 
@@ -79,6 +82,47 @@ class Fit(DrawnFit):
         from skinbayes.fit.given_draws import fit_parts
 
         return cls(*fit_parts(problem, samples, log_weights, seed), problem)
+
+    def predict(
+        self,
+        conditions: Data,
+        seed: int = 1,
+        progress: Callable[[int, int], None] | None = None,
+        cores: int = 1,
+    ) -> Prediction:
+        """Posterior predictions at rows that were not measured.
+
+        Effects of people, liquids and other groups that the fit has seen are those that it found; of others they are drawn
+        anew. A known spread of the data (``spread = "use"``) is taken to be that of the typical datum.
+
+        Parameters
+        ----------
+        conditions : rows, as a CSV, data set, data frame or mapping of columns, with the columns that the data of the fit have
+            (what was observed apart)
+        seed : non-negative integer, for scatter and effects of new people
+        progress : called with the number done and their total if a table has to be made for the rows
+        cores : processes that make it
+
+        Returns
+        -------
+        Prediction
+            Draws of the model and of one measurement more for each row, with ``quantiles``, ``probability``, ``holds`` and
+            ``to_frame``.
+
+        Raises
+        ------
+        InputError
+            A column is missing, cannot be used, or lies where the model cannot say anything; model or data of the fit are gone.
+
+        Examples
+        --------
+        >>> rows = {"person": ["ID01", "new"], "liquid": ["water", "water"], "normal_force": [1.0, 1.0]}
+        >>> fit.predict(rows).quantiles("friction_coefficient", 0.5).shape
+        (2,)
+        """
+        from skinbayes.fit.prediction import predicted
+
+        return predicted(self, conditions, seed, progress, cores)
 
     def save(self, path: str | Path) -> Path:
         """Write the result as one netCDF file in the ArviZ schema; the file appears whole or not at all, and shows any damage.

@@ -56,12 +56,16 @@ def _check_count(path: object, count: int, forward: ForwardModel) -> None:
         )
 
 
+def given_rows(spec: ModelSpec, forward: ForwardModel, dataset: Dataset) -> Conditions:
+    """Rows with those of their columns that the model uses; :class:`InputError` if there are too many of them."""
+    _check_count(dataset.path, dataset.n_rows, forward)
+    return _columns(dataset, set(forward.input_names()), covariate_columns(spec.covariates, dataset))
+
+
 def user_rows(spec: ModelSpec, forward: ForwardModel, data: Data) -> Conditions:
     """Rows of a CSV of the user's; :class:`InputError` if none of its columns is an input of the forward model."""
     dataset = as_dataset(data)
-    path = dataset.path
-    _check_count(path, dataset.n_rows, forward)
-    rows = _columns(dataset, set(forward.input_names()), covariate_columns(spec.covariates, dataset))
+    path, rows = dataset.path, given_rows(spec, forward, dataset)
     if not rows.values and not any(parameter.by in rows.labels for parameter in spec.parameters):
         raise InputError(
             f"{path}: none of its columns is an input of '{forward.name}', which takes {', '.join(forward.input_names())}"

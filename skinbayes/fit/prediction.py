@@ -1,0 +1,332 @@
+"""What a fit predicts at rows that were not measured, how probable a statement about them is, and where it holds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinbayes.arrays import ArrayLike, FloatArray
+from skinbayes.errors import InputError
+from skinbayes.files.dataset import Data
+from skinbayes.files.find_dataset import suggestions
+from skinbayes.problem.new_conditions import NewConditions, at_new_conditions
+from skinbayes.problem.observations import Observation
+from skinbayes.units import parse_quantity
+from skinbayes.vocabulary import QUANTITIES
+
+if TYPE_CHECKING:
+    import pandas
+
+    from skinbayes.fit.result import FitResult
+    from skinbayes.problem import Problem
+
+MOST_NUMBERS = 4_000_000
+"""Draws times rows that are predicted; of more rows fewer draws, evenly spaced."""
+
+FEWEST_DRAWS = 200
+"""Draws without which the ends of an interval are not known."""
+
+STATEMENT = re.compile(r"^\s*(\w+)\s*(<=|>=|<|>)\s*(.+?)\s*$")
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Posterior predictions at new rows.
+
+    Attributes
+    ----------
+    columns : the rows: quantity to SI values, label column to text, each ``(N,)``
+    of_model : observable to predictions of the model, ``(draws, N)``, SI: of a known person or liquid with its effect, of a new
+        one as of the median one; NaN where the model has no answer
+    of_measurement : the same for one measurement more: with its scatter, and with an effect drawn for each new person or liquid
+    notes : sentences on what these predictions do not contain
+
+    Examples
+    --------
+    Examples of methods go on from this one.
+
+    >>> import numpy as np
+    >>> import skinbayes as sb
+    >>> problem = sb.load_problem("finger-null")
+    >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 500))
+    >>> prediction = fit.predict({"person": ["ID01", "new"], "liquid": ["water", "water"], "normal_force": [1.0, 1.0]})
+    >>> prediction.of_model["friction_coefficient"].shape
+    (500, 2)
+    """
+
+    columns: Mapping[str, np.ndarray]
+    of_model: Mapping[str, FloatArray]
+    of_measurement: Mapping[str, FloatArray]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def n_rows(self) -> int:
+        """Number of rows N."""
+        return int(next(iter(self.of_model.values())).shape[1])
+
+    def quantiles(
+        self, observable: str, probabilities: ArrayLike = (0.05, 0.5, 0.95), measured: bool = True
+    ) -> FloatArray:
+        """Quantiles of each row.
+
+        Parameters
+        ----------
+        observable : name of what is predicted
+        probabilities : between 0 and 1, shape ``(P,)``
+        measured : of one measurement more, scatter included; False for the model itself
+
+        Returns
+        -------
+        ndarray
+            Shape ``(P, N)``, SI; NaN where the model has no answer in some draws.
+
+        Examples
+        --------
+        >>> prediction.quantiles("friction_coefficient").shape
+        (3, 2)
+        """
+        draws = (self.of_measurement if measured else self.of_model)[observable]
+        return np.asarray(np.quantile(draws, np.asarray(probabilities, dtype=float), axis=0))
+
+    def probability(self, statement: str, measured: bool = True) -> FloatArray:
+        """How probable a statement is at each row.
+
+        Parameters
+        ----------
+        statement : an observable, ``<``, ``<=``, ``>`` or ``>=``, and a value with its unit: ``"friction_coefficient < 0.4"``
+        measured : of one measurement more, scatter included; False for the model itself
+
+        Returns
+        -------
+        ndarray
+            Shape ``(N,)``: the fraction of the draws in which it is true; one in which the model has no answer counts as not.
+
+        Raises
+        ------
+        InputError
+            No such statement, quantity or unit.
+
+        Examples
+        --------
+        >>> prediction.probability("friction_coefficient > 0").tolist()
+        [1.0, 1.0]
+        """
+        name, less, value = self._parsed(statement)
+        draws = (self.of_measurement if measured else self.of_model)[name]
+        with np.errstate(invalid="ignore"):
+            # the values are continuous, so that < and <= are the same
+            return np.asarray(((draws < value) if less else (draws > value)).mean(axis=0))
+
+    def holds(
+        self, statement: str, along: str, confidence: float = 0.95, measured: bool = True
+    ) -> list[tuple[dict[str, str | float], list[tuple[float, float]]]]:
+        """Where along a column a statement is as probable as wanted: the loads that keep friction low.
+
+        Between neighbouring rows the probability is taken to be linear in the column, so that rows should lie close where it
+        changes; nothing is said beyond them.
+
+        Parameters
+        ----------
+        statement : see :meth:`probability`
+        along : a numeric column of the rows
+        confidence : the probability wanted, between 0 and 1
+        measured : see :meth:`probability`
+
+        Returns
+        -------
+        list
+            For each combination of the other columns: these, by name, and the intervals ``(from, to)`` of the column, SI, in
+            which the statement holds; empty if nowhere.
+
+        Raises
+        ------
+        InputError
+            No such column, or fewer than two values of it.
+
+        Examples
+        --------
+        >>> rows = {"person": ["x", "x"], "liquid": ["water", "water"], "normal_force": [0.5, 2.0]}
+        >>> fit.predict(rows).holds("friction_coefficient > 0", "normal_force")
+        [({'person': 'x', 'liquid': 'water'}, [(0.5, 2.0)])]
+        """
+        if not 0.0 < confidence < 1.0:
+            raise InputError(f"confidence: found {confidence:g}; expected a probability between 0 and 1")
+        numeric = {name: values for name, values in self.columns.items() if values.dtype.kind == "f"}
+        if along not in numeric:
+            raise InputError(
+                f"'{along}' is no numeric column of the rows; expected one of {', '.join(numeric)}."
+                f"{suggestions(along, list(numeric))}"
+            )
+        probability = self.probability(statement, measured)
+        others = [name for name in self.columns if name != along]
+        rows: dict[tuple[str | float, ...], list[int]] = {}
+        for row in range(self.n_rows):
+            key = tuple(self.columns[name][row].item() for name in others)
+            rows.setdefault(key, []).append(row)
+        found = []
+        for key, places in rows.items():
+            order = sorted(places, key=lambda row: float(numeric[along][row]))
+            x, p = numeric[along][order], probability[order]
+            if len(np.unique(x)) < 2:
+                where = ", ".join(f"{name} {value}" for name, value in zip(others, key, strict=True))
+                raise InputError(
+                    f"{along} has one value at {where or 'all rows'}; expected several to look between"
+                )
+            found.append((dict(zip(others, key, strict=True)), _above(x, p, confidence)))
+        return found
+
+    def to_frame(self, statement: str | None = None) -> pandas.DataFrame:
+        """The rows with medians and 90 % intervals.
+
+        Parameters
+        ----------
+        statement : whose probability becomes a column ``probability``, see :meth:`probability`
+
+        Returns
+        -------
+        pandas.DataFrame
+            SI. Of each observable ``NAME_q05``, ``NAME_median``, ``NAME_q95`` of the model, and the same with
+            ``NAME_with_noise`` of one measurement more.
+
+        Examples
+        --------
+        >>> list(prediction.to_frame().columns)[:4]
+        ['person', 'liquid', 'normal_force', 'friction_coefficient_q05']
+        """
+        import pandas
+
+        found = dict(self.columns)
+        for name in self.of_model:
+            for measured, ending in ((False, ""), (True, "_with_noise")):
+                for word, values in zip(
+                    ("q05", "median", "q95"), self.quantiles(name, measured=measured), strict=True
+                ):
+                    found[f"{name}{ending}_{word}"] = values
+        if statement is not None:
+            found["probability"] = self.probability(statement)
+        return pandas.DataFrame(found)
+
+    def _parsed(self, statement: str) -> tuple[str, bool, float]:
+        """The observable, whether it is to be less, and the value in SI."""
+        match = STATEMENT.match(statement)
+        expected = (
+            "expected an observable, < or >, and a value with its unit, such as 'friction_coefficient < 0.4'"
+        )
+        if match is None:
+            raise InputError(f"statement: found {statement[:80]!r}; {expected}")
+        name, sign, value = match.groups()
+        if name not in self.of_model:
+            raise InputError(
+                f"statement: '{name}' is not predicted here, but {', '.join(self.of_model)} is; {expected}"
+            )
+        return name, sign[0] == "<", parse_quantity(value, QUANTITIES[name].unit, where=f"statement: {name}")
+
+
+def predicted(
+    fit: FitResult,
+    conditions: Data,
+    seed: int = 1,
+    progress: Callable[[int, int], None] | None = None,
+    cores: int = 1,
+) -> Prediction:
+    """Posterior predictions of a fit at new rows; see :meth:`skinbayes.Fit.predict`."""
+    if fit.problem is None:
+        raise InputError(
+            f"{fit.name}: the model or the data of the fit are not at hand any more, so nothing can be predicted with it"
+        )
+    new = at_new_conditions(fit.problem, conditions, progress, cores)
+    theta = fit.theta()
+    most = max(FEWEST_DRAWS, MOST_NUMBERS // new.problem.conditions.n_rows)
+    theta = theta[:: -(-len(theta) // most)]
+    rng = np.random.default_rng([seed])
+    effects, anew = _effects(fit.problem, new, theta, rng)
+    of_model = {name: new.problem.predict(theta)[name] for name in fit.problem.observables}
+    observed = tuple(_as_measured(old, of_model[old.name], new) for old in fit.problem.observations)
+    spread = {
+        name: np.full(new.problem.conditions.n_rows, float(np.median(values)))
+        for name, values in fit.problem.input_spread.items()
+        if name in new.problem.conditions.values
+    }
+    measuring = replace(new.problem, observations=observed, input_spread=spread)
+    measuring.__dict__["model"] = new.problem.model
+    drawn = measuring.simulate(theta, rng, anew)
+    of_measurement = dict(zip(of_model, np.split(drawn, len(of_model), axis=-1), strict=True))
+    if measuring.shared is not None and effects is not None:
+        (name,) = of_model
+        at_rows = measuring.shared.at_rows(effects)
+        of_model[name] = (
+            of_model[name] * np.exp(at_rows) if observed[0].noise.logarithmic else of_model[name] + at_rows
+        )
+    return Prediction(
+        new.dataset.columns,
+        of_model,
+        of_measurement,
+        (*_about_levels(new), *new.notes, *new.problem.explain(np.median(theta, axis=0))),
+    )
+
+
+def _effects(
+    measured: Problem, new: NewConditions, theta: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """Effects at the new rows, ``(B, K)``: known ones and none for new levels; known ones and drawn ones for new levels."""
+    shared = new.problem.shared
+    if shared is None:
+        return None, None
+    inputs = new.problem.inputs(theta)
+    scales = np.stack(
+        [np.broadcast_to(inputs[name][:, 0], len(theta)) for name in new.problem.shared_parameters], axis=-1
+    )
+    given, drawn = measured.draw_effects(theta, rng), shared.draw_new_effects(rng, scales)
+    old = given[:, new.known]  # that of a new level is replaced
+    return np.where(new.known < 0, 0.0, old), np.where(new.known < 0, drawn, old)
+
+
+def _as_measured(old: Observation, predictions: FloatArray, new: NewConditions) -> Observation:
+    """An observation at the new rows about their median prediction, with the spread that the data typically have."""
+    with np.errstate(all="ignore"):
+        values = np.nanmedian(predictions, axis=0) if np.isfinite(predictions).any() else predictions[0]
+    relative = old.noise.logarithmic or old.noise.relative
+    typical = (
+        float(np.median(old.spread / old.values if relative else old.spread)) if old.spread.any() else 0.0
+    )
+    return replace(
+        old, values=values, spread=np.full(len(values), typical) * (np.abs(values) if relative else 1.0)
+    )
+
+
+def _about_levels(new: NewConditions) -> list[str]:
+    said = []
+    for column, levels in new.new_levels.items():
+        named = [level for level in levels if level]
+        who = (
+            f"{column} {', '.join(named[:5])}{' and others' if len(named) > 5 else ''}"
+            if named
+            else f"the {column} of the rows"
+        )
+        said.append(
+            f"Not measured in the fit: {who}. Predictions of the model are those of the median {column}; those of measurements "
+            f"contain how far one {column} differs from another."
+        )
+    return said
+
+
+def _above(x: FloatArray, p: FloatArray, level: float) -> list[tuple[float, float]]:
+    """Intervals of ``x`` in which the line through the points ``p`` is at least ``level``."""
+    intervals: list[tuple[float, float]] = []
+    start = float(x[0]) if p[0] >= level else None
+    for i in range(1, len(x)):
+        before, after = p[i - 1] >= level, p[i] >= level
+        if before != after:
+            cross = float(x[i - 1] + (level - p[i - 1]) / (p[i] - p[i - 1]) * (x[i] - x[i - 1]))
+            if start is None:
+                start = cross
+            else:
+                intervals.append((start, cross))
+                start = None
+    if start is not None:
+        intervals.append((start, float(x[-1])))
+    return intervals
