@@ -16,6 +16,7 @@ import click
 from skinbayes.cli.catalogue import datasets, models, show
 from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
+from skinbayes.cli.design import design
 from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
 from skinbayes.cli.new import new
@@ -67,6 +68,7 @@ for _command in (
     fit,
     sensitivity,
     compare,
+    design,
     report,
 ):
     cli.add_command(_command)

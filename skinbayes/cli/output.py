@@ -218,3 +218,15 @@ def print_sentences(sentences: Iterable[str], title: str = "") -> None:
         terminal.print(Text(printable(title), style="bold"))
     for sentence in sentences:
         _print_indented(terminal, printable(f"- {sentence}"), 1)
+
+
+def quantity_text(name: str, value: Any) -> str:
+    """A value with its unit, three digits; text as it is, a dash for none."""
+    from skinbayes.units import format_quantity
+    from skinbayes.vocabulary import QUANTITIES
+
+    if isinstance(value, str):
+        return value
+    if value != value:
+        return "–"
+    return format_quantity(float(value), QUANTITIES[name].unit if name in QUANTITIES else "1", 3)

@@ -13,6 +13,7 @@ from skinbayes.cli.output import (
     print_json,
     print_sentences,
     print_table,
+    quantity_text,
     say,
 )
 from skinbayes.errors import InputError
@@ -122,21 +123,10 @@ def _intervals(prediction: Prediction, measured: bool) -> dict[str, Any]:
     }
 
 
-def _text(name: str, value: Any) -> str:
-    from skinbayes.units import format_quantity
-    from skinbayes.vocabulary import QUANTITIES
-
-    if isinstance(value, str):
-        return value
-    if value != value:
-        return "–"
-    return format_quantity(float(value), QUANTITIES[name].unit if name in QUANTITIES else "1", 3)
-
-
 def _print(prediction: Prediction, statement: str | None, probability: Any) -> None:
     headers = list(prediction.columns)
     cells = [
-        [_text(name, values[i].item()) for name, values in prediction.columns.items()]
+        [quantity_text(name, values[i].item()) for name, values in prediction.columns.items()]
         for i in range(prediction.n_rows)
     ]
     for name in prediction.of_model:
@@ -146,7 +136,7 @@ def _print(prediction: Prediction, statement: str | None, probability: Any) -> N
             for i, row in enumerate(cells):
                 row.append(
                     "–" if middle[i] != middle[i]
-                    else f"{_text(name, middle[i])} ({_text(name, low[i])} to {_text(name, high[i])})"
+                    else f"{quantity_text(name, middle[i])} ({quantity_text(name, low[i])} to {quantity_text(name, high[i])})"
                 )  # fmt: skip
     if statement is not None:
         headers.append(statement)
@@ -173,7 +163,7 @@ def _sentence(
 ) -> str:
     name = str(along)
     place = (
-        f" at {', '.join(f'{key} {_text(key, value)}' for key, value in at.items())}"
+        f" at {', '.join(f'{key} {quantity_text(key, value)}' for key, value in at.items())}"
         if several and at
         else ""
     )
@@ -181,7 +171,9 @@ def _sentence(
         return f"'{statement}' does not hold with {confidence:.0%} probability at any {name} of the rows{place}.".replace(
             "%", " %"
         )
-    spans = " and ".join(f"from {_text(name, low)} to {_text(name, high)}" for low, high in where)
+    spans = " and ".join(
+        f"from {quantity_text(name, low)} to {quantity_text(name, high)}" for low, high in where
+    )
     return (
         f"'{statement}' holds with at least {confidence:.0%} probability for {name} {spans}{place}, within the rows given."
     ).replace("%", " %")

@@ -49,7 +49,7 @@ def fits_of(names: tuple[str, ...], wanted: Wanted) -> list[Fit | JointFit]:
     if len(names) < 2:
         raise InputError(f"{len(names)} run or model given; a comparison needs at least two")
     found: list[Fit | JointFit | Problem | JointProblem] = [
-        load_any_fit(name) if _is_run(name) else load_any_problem(name, data_of(name, wanted.data))
+        load_any_fit(name) if is_run(name) else load_any_problem(name, data_of(name, wanted.data))
         for name in names
     ]
     models = [entry for entry in found if isinstance(entry, (Problem, JointProblem))]
@@ -66,7 +66,7 @@ def fits_of(names: tuple[str, ...], wanted: Wanted) -> list[Fit | JointFit]:
     ]
 
 
-def _is_run(name: str) -> bool:
+def is_run(name: str) -> bool:
     """Whether a name is that of a run; a model is a file (.toml) or shipped."""
     from skinbayes.files.locate import shipped_names
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from skinbayes.fit.netcdf import result_image
 
 if TYPE_CHECKING:
     from skinbayes.files.dataset import Data
+    from skinbayes.fit.design import Design
     from skinbayes.fit.prediction import Prediction
     from skinbayes.problem import Problem
 
@@ -123,6 +124,51 @@ class Fit(DrawnFit):
         from skinbayes.fit.prediction import predicted
 
         return predicted(self, conditions, seed, progress, cores)
+
+    def design(
+        self,
+        candidates: Data,
+        parameters: Sequence[str] = (),
+        against: Fit | None = None,
+        rows: int = 1,
+        cost: str | None = None,
+        seed: int = 1,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> Design:
+        """Which further rows would tell most, before they are measured and without new fits.
+
+        The expected information of a measurement: by how much, in nats, it narrows what the fit knows, averaged over what the fit
+        says it could give. See ``skinbayes.statistics.expected_information``.
+
+        Parameters
+        ----------
+        candidates : rows as :meth:`predict` takes them
+        parameters : one to three free parameters that are asked about; all together if empty, those of the noise included
+        against : a fit of another model of the same quantities: then it is asked which of the two, at even odds, is right
+        rows : how many rows to choose: each the one that adds most to those chosen before
+        cost : column of the candidates with the cost of a row; what counts is then information over cost
+        seed : non-negative integer
+        progress : as :meth:`predict` takes it
+
+        Returns
+        -------
+        Design
+            Information of each candidate with its standard error, and the rows chosen; ``sentence`` and ``to_frame``.
+
+        Raises
+        ------
+        InputError
+            As :meth:`predict`; no such parameter or column.
+
+        Examples
+        --------
+        >>> candidates = {"person": ["ID01", "new"], "liquid": ["water", "water"], "normal_force": [1.0, 1.0]}
+        >>> fit.design(candidates).information.shape
+        (2,)
+        """
+        from skinbayes.fit.design import design
+
+        return design(self, candidates, parameters, against, rows, cost, seed, progress)
 
     def save(self, path: str | Path) -> Path:
         """Write the result as one netCDF file in the ArviZ schema; the file appears whole or not at all, and shows any damage.

@@ -234,32 +234,24 @@ def predicted(
     cores: int = 1,
 ) -> Prediction:
     """Posterior predictions of a fit at new rows; see :meth:`skinbayes.Fit.predict`."""
-    if fit.problem is None:
-        raise InputError(
-            f"{fit.name}: the model or the data of the fit are not at hand any more, so nothing can be predicted with it"
-        )
-    new = at_new_conditions(fit.problem, conditions, progress, cores)
-    theta = fit.theta()
+    new = new_conditions_of(fit, conditions, progress, cores)
+    measured, theta = new.measured, fit.theta()
     most = max(FEWEST_DRAWS, MOST_NUMBERS // new.problem.conditions.n_rows)
     theta = theta[:: -(-len(theta) // most)]
     rng = np.random.default_rng([seed])
-    effects, anew = _effects(fit.problem, new, theta, rng)
-    of_model = {name: new.problem.predict(theta)[name] for name in fit.problem.observables}
-    observed = tuple(_as_measured(old, of_model[old.name], new) for old in fit.problem.observations)
-    spread = {
-        name: np.full(new.problem.conditions.n_rows, float(np.median(values)))
-        for name, values in fit.problem.input_spread.items()
-        if name in new.problem.conditions.values
-    }
-    measuring = replace(new.problem, observations=observed, input_spread=spread)
-    measuring.__dict__["model"] = new.problem.model
+    effects, anew = _effects(measured, new, theta, rng)
+    predictions = new.problem.predict(theta)
+    of_model = {name: predictions[name] for name in measured.observables}
+    measuring = measuring_at(new, of_model)
     drawn = measuring.simulate(theta, rng, anew)
     of_measurement = dict(zip(of_model, np.split(drawn, len(of_model), axis=-1), strict=True))
     if measuring.shared is not None and effects is not None:
         (name,) = of_model
         at_rows = measuring.shared.at_rows(effects)
         of_model[name] = (
-            of_model[name] * np.exp(at_rows) if observed[0].noise.logarithmic else of_model[name] + at_rows
+            of_model[name] * np.exp(at_rows)
+            if measuring.observations[0].noise.logarithmic
+            else of_model[name] + at_rows
         )
     return Prediction(
         new.dataset.columns,
@@ -267,6 +259,30 @@ def predicted(
         of_measurement,
         (*_about_levels(new), *new.notes, *new.problem.explain(np.median(theta, axis=0))),
     )
+
+
+def new_conditions_of(
+    fit: FitResult, conditions: Data, progress: Callable[[int, int], None] | None = None, cores: int = 1
+) -> NewConditions:
+    """The problem of a fit at other rows; :class:`InputError` if it is gone or cannot be asked there."""
+    if fit.problem is None:
+        raise InputError(
+            f"{fit.name}: the model or the data of the fit are not at hand any more, so nothing can be predicted with it"
+        )
+    return at_new_conditions(fit.problem, conditions, progress, cores)
+
+
+def measuring_at(new: NewConditions, predictions: Mapping[str, FloatArray]) -> Problem:
+    """The problem at new rows with observations there, of the typical spread; ``predictions`` of each, ``(draws, N)``."""
+    observed = tuple(_as_measured(old, predictions[old.name]) for old in new.measured.observations)
+    spread = {
+        name: np.full(new.problem.conditions.n_rows, float(np.median(values)))
+        for name, values in new.measured.input_spread.items()
+        if name in new.problem.conditions.values
+    }
+    measuring = replace(new.problem, observations=observed, input_spread=spread)
+    measuring.__dict__["model"] = new.problem.model
+    return measuring
 
 
 def _effects(
@@ -285,7 +301,7 @@ def _effects(
     return np.where(new.known < 0, 0.0, old), np.where(new.known < 0, drawn, old)
 
 
-def _as_measured(old: Observation, predictions: FloatArray, new: NewConditions) -> Observation:
+def _as_measured(old: Observation, predictions: FloatArray) -> Observation:
     """An observation at the new rows about their median prediction, with the spread that the data typically have."""
     with np.errstate(all="ignore"):
         values = np.nanmedian(predictions, axis=0) if np.isfinite(predictions).any() else predictions[0]

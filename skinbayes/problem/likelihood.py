@@ -103,6 +103,14 @@ class Likelihood:
 
         return in_pieces(piece, theta, self.size)
 
+    def effects_given(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Mean ``(B, G)`` and covariance ``(B, G, G)`` of all that rows share given parameters and data."""
+        groups = self.problem.shared
+        assert groups is not None
+        inputs, (predicted,) = self._predictions(theta)
+        residual, width, scales, _ = self._residuals(inputs, predicted)
+        return groups.effects_given(residual, width, scales)
+
     def width(self, theta: FloatArray) -> FloatArray:
         """Width of the noise of each datum, shape ``(B, M)``; of its ln where the noise is logarithmic."""
         return in_pieces(self._widths, theta, self.size)

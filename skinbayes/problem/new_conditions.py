@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Progress
@@ -30,15 +31,17 @@ class NewConditions:
 
     Attributes
     ----------
-    problem : the problem at the new rows, its parameters in the order of the measured one; without observations
+    measured : the problem with its data
+    problem : the same at the new rows, its parameters in the order of the measured one; without observations
     dataset : the new rows as they were given
     known : place among the effects of the measured rows that each effect of the new ones has, −1 for new levels, shape ``(K,)``
     notes : sentences on what is not carried over to new rows
     """
 
+    measured: Problem
     problem: Problem
     dataset: Dataset
-    known: np.ndarray
+    known: NDArray[np.intp]
     notes: tuple[str, ...]
 
     @property
@@ -103,7 +106,7 @@ def at_new_conditions(
     except InputError as error:
         raise InputError(f"{dataset.path}: {error}") from None
     _prepare(problem, measured, progress, cores)
-    return NewConditions(problem, dataset, known, notes)
+    return NewConditions(measured, problem, dataset, known, notes)
 
 
 def _prepare(problem: Problem, measured: Problem, progress: Progress | None, cores: int) -> None:
@@ -129,7 +132,7 @@ def _prepare(problem: Problem, measured: Problem, progress: Progress | None, cor
 
 def _shared(
     measured: Problem, rows: Conditions, dataset: Dataset
-) -> tuple[CrossedGroups | None, SharedScatter | None, np.ndarray, tuple[str, ...]]:
+) -> tuple[CrossedGroups | None, SharedScatter | None, NDArray[np.intp], tuple[str, ...]]:
     """What new rows share: effects of groups and curves; where each effect stands among those of the measured rows; notes."""
     known, notes = [np.zeros(0, dtype=np.intp)], list[str]()
     groups = measured.groups

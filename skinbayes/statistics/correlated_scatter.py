@@ -107,7 +107,7 @@ class CorrelatedScatter:
 
         def part(data: GroupData) -> FloatArray:
             white = White.of(self, data)
-            inner, target = white.turned(self._factor(data.scale))
+            inner, target = white.turned(self.prior_factor(data.scale))
             square = (white.residual**2).sum(axis=-1)
             # the last pivot of the factor of [[Q, t], [tᵀ, square + 1]] is what the effects leave of the square, and 1
             bordered = np.empty((len(inner), self.n_effects + 1, self.n_effects + 1))
@@ -190,7 +190,9 @@ class CorrelatedScatter:
         """Effects that no data have seen, shape ``(B, K)``."""
         values = np.atleast_2d(np.asarray(scales, dtype=float))
         standard = rng.standard_normal((len(values), self.n_effects))
-        parts = [times(self._factor(values[place]), standard[place]) for place in self._parts(len(values))]
+        parts = [
+            times(self.prior_factor(values[place]), standard[place]) for place in self._parts(len(values))
+        ]
         return np.concatenate(parts) if parts else standard
 
     def draw_noise(self, rng: np.random.Generator, scales: ArrayLike) -> FloatArray:
@@ -242,7 +244,7 @@ class CorrelatedScatter:
         independent = self.noise is not None and self.noise.independent
         return scales[:, place], scales[:, place + 1] if independent else np.zeros(len(scales))
 
-    def _factor(self, scales: FloatArray) -> FloatArray:
+    def prior_factor(self, scales: FloatArray) -> FloatArray:
         """F, from independent standard normal numbers to effects, shape ``(B, K, K)``."""
         found = np.zeros((len(scales), self.n_effects, self.n_effects))
         start = 0
