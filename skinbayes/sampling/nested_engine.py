@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -119,7 +120,10 @@ def _run(
         sample="rslice",
         rstate=np.random.default_rng([options.seed, task[0]]),
     )
-    sampler.run_nested(dlogz=REST, print_progress=progress is not None, print_func=_told(progress, *task))
+    with warnings.catch_warnings():
+        # on a narrow ridge dynesty says once that steps along it are many, and then doubles them
+        warnings.filterwarnings("ignore", "The slice sample interval was exp|Enabling doubling strategy", UserWarning)
+        sampler.run_nested(dlogz=REST, print_progress=progress is not None, print_func=_told(progress, *task))
     return sampler.results
 
 
