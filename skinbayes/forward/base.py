@@ -25,6 +25,27 @@ Inputs = Mapping[str, FloatArray]
 Ranges = Mapping[str, tuple[float, float]]
 """Name of an input to its smallest and largest value over the rows and nearly all of the prior, SI."""
 
+Multiples = Mapping[str, tuple[str, float]]
+"""Name of an input to another one of which it is the same multiple at all rows, and the multiple."""
+
+
+class TiedRanges(dict[str, tuple[float, float]]):
+    """`Ranges` of inputs some of which vary together.
+
+    Attributes
+    ----------
+    multiples : which, and how
+    """
+
+    def __init__(self, ends: Ranges, multiples: Multiples) -> None:
+        super().__init__(ends)
+        self.multiples = multiples
+
+
+def multiples_of(ranges: Ranges) -> Multiples:
+    """Inputs that are multiples of others; none where nothing is known of that."""
+    return ranges.multiples if isinstance(ranges, TiedRanges) else {}
+
 
 @dataclass(frozen=True)
 class Tables:
