@@ -154,6 +154,8 @@ def _paragraphs(text: str) -> list[str]:
 
 
 def _show_dataset(name: str, as_json: bool) -> None:
+    from skinbayes.files.provenance import TEXTS
+
     provenance, table = _read(name)
     if as_json:
         described = None if provenance is None else provenance.model_dump()
@@ -161,17 +163,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
         return
     if provenance is not None:
         print_text(provenance.title, ", ".join(provenance.authors), "")
-        shown = (
-            "doi",
-            "licence",
-            "attribution",
-            "where",
-            "how_read",
-            "digitised_by",
-            "transformation",
-            "spread",
-        )
-        for label in shown:
+        for label in ("doi", *TEXTS):
             if value := getattr(provenance, label):
                 text = ", ".join(value) if isinstance(value, list) else value
                 print_text(f"{label.replace('_', ' ') + ':':16}{text}")
