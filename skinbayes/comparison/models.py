@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,9 +17,10 @@ from skinbayes.comparison.verdicts import (
     Statement,
     few_levels,
     level_question,
-    on_sampling,
     plus_minus,
     pointwise_question,
+    unreliable_data,
+    unreliable_levels,
 )
 from skinbayes.comparison.weights import stacking_weights
 from skinbayes.errors import InputError
@@ -300,6 +301,18 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
         )
     models.sort(key=lambda model: -model.elpd_loo)
     return Comparison(tuple(models), pointwise.shape[1], grouped)
+
+
+def on_sampling(models: Iterable[ComparedModel], rows: int) -> list[Statement]:
+    """What is to be known of the numbers of each model: what was sampled anew, what is doubtful, whether it has converged."""
+    said = []
+    for model in models:
+        said += unreliable_data(model.name, model.unreliable_rows, model.refitted_rows, rows)
+        for left_out in model.left_out.values():
+            said += unreliable_levels(model.name, left_out)
+        if not model.converged:
+            said.append(Statement(f"'{model.name}' has NOT CONVERGED; its numbers are provisional."))
+    return said
 
 
 def grouped_by(fits: Sequence[Fit | JointFit]) -> tuple[str, ...]:

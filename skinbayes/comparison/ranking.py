@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from skinbayes.comparison.models import Comparison, compare_scores, grouped_by
+from skinbayes.comparison.models import Comparison, compare_scores, grouped_by, on_sampling
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
 from skinbayes.comparison.parts import SINGLE
 from skinbayes.comparison.scores import Scores, difference
@@ -18,7 +18,6 @@ from skinbayes.comparison.verdicts import (
     Statement,
     few_levels,
     level_question,
-    on_sampling,
     plus_minus,
     pointwise_question,
 )

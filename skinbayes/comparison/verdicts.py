@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from skinbayes.comparison.parts import ORDER
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut
 from skinbayes.phrases import plural, singular
-
-if TYPE_CHECKING:
-    from skinbayes.comparison.models import ComparedModel
 
 AHEAD, LOSES, DOUBT, REMARK = "ahead", "loses", "doubt", "remark"
 
@@ -75,18 +72,6 @@ def level_question(column: str, grouped_by: Sequence[str]) -> str:
     article = "an" if singular(column)[0] in "aeiou" else "a"
     asks = f"asks how well {article} {singular(column)} never measured is predicted{rest}"
     return f"Leaving out one {singular(column)} at a time {asks}."
-
-
-def on_sampling(models: Iterable[ComparedModel], rows: int) -> list[Statement]:
-    """What is to be known of the numbers of each model: what was sampled anew, what is doubtful, whether it has converged."""
-    said = []
-    for model in models:
-        said += unreliable_data(model.name, model.unreliable_rows, model.refitted_rows, rows)
-        for left_out in model.left_out.values():
-            said += unreliable_levels(model.name, left_out)
-        if not model.converged:
-            said.append(Statement(f"'{model.name}' has NOT CONVERGED; its numbers are provisional."))
-    return said
 
 
 def unreliable_data(name: str, unreliable: int, refitted: int, count: int) -> list[Statement]:
