@@ -127,7 +127,7 @@ def _told(problem: BoundModel) -> dict[str, Any]:
 
 
 def _print_experiment(problem: BoundModel) -> None:
-    from skinbayes.problem.surface_numbers import surface_sentence
+    from skinbayes.problem.surface_numbers import surface_words
 
     spec = problem.spec
     print_text(f"forward model: {spec.forward} – {problem.forward.summary}")
@@ -141,8 +141,8 @@ def _print_experiment(problem: BoundModel) -> None:
         print_text(f"observable:    {observable}, noise {noise}")
     if spec.rheology:
         print_text(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
-    for sentence in surface_sentence(problem, problem.prior_medians(), ""):
-        print_text(sentence.replace("Surface: ", "surface:       "))
+    if words := surface_words(problem, problem.prior_medians()):
+        print_text(f"surface:       {words}.")
     for covariate in spec.covariates:
         print_text(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
 
@@ -154,6 +154,8 @@ def _paragraphs(text: str) -> list[str]:
 
 
 def _show_dataset(name: str, as_json: bool) -> None:
+    from skinbayes.files.provenance import TEXTS
+
     provenance, table = _read(name)
     if as_json:
         described = None if provenance is None else provenance.model_dump()
@@ -161,17 +163,7 @@ def _show_dataset(name: str, as_json: bool) -> None:
         return
     if provenance is not None:
         print_text(provenance.title, ", ".join(provenance.authors), "")
-        shown = (
-            "doi",
-            "licence",
-            "attribution",
-            "where",
-            "how_read",
-            "digitised_by",
-            "transformation",
-            "spread",
-        )
-        for label in shown:
+        for label in ("doi", *TEXTS):
             if value := getattr(provenance, label):
                 text = ", ".join(value) if isinstance(value, list) else value
                 print_text(f"{label.replace('_', ' ') + ':':16}{text}")

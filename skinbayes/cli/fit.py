@@ -20,6 +20,7 @@ from skinbayes.cli.options import (
     settings_of,
 )
 from skinbayes.cli.output import EXIT_DONE, EXIT_INTERRUPTED, EXIT_NOT_CONVERGED, print_json, say
+from skinbayes.cli.runs import run_directory
 from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MAX_STEPS, SEED
 from skinbayes.errors import InputError
 
@@ -84,7 +85,7 @@ def fit(
     from skinbayes.problem.rows import data_notes
 
     problem = load_any_problem(model, data_of(model, given), settings=settings_of(pairs))
-    directory = Path(output) if output else Path("runs") / f"{problem.name}-seed{seed}"
+    directory = Path(output) if output else run_directory(problem.name, seed)
     options = _engine_options(engine_pairs)
     if max_steps is not None:
         options = {"max_steps": max_steps} | options

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit, JointFit
     from skinbayes.problem import JointProblem, Problem
 
+RUNS = Path("runs")
+"""Folder of the runs of models, unless told otherwise."""
+
 
 @dataclass(frozen=True)
 class Wanted:
@@ -29,6 +32,11 @@ class Wanted:
     ess: int
     cores: int
     folder: Path
+
+
+def run_directory(model: str, seed: int, folder: Path = RUNS) -> Path:
+    """Where the run of a model is, or comes to be, unless told otherwise."""
+    return folder / f"{model}-seed{seed}"
 
 
 def fits_of(names: tuple[str, ...], wanted: Wanted) -> list[Fit | JointFit]:
@@ -55,7 +63,7 @@ def fits_of(names: tuple[str, ...], wanted: Wanted) -> list[Fit | JointFit]:
     models = [entry for entry in found if isinstance(entry, (Problem, JointProblem))]
     if wanted.data and not models:
         raise InputError("--data: all names are runs, which have their data; expected it with a model")
-    places = [wanted.folder / f"{problem.name}-seed{wanted.seed}" for problem in models]
+    places = [run_directory(problem.name, wanted.seed, wanted.folder) for problem in models]
     for place in places:
         if places.count(place) > 1:
             raise InputError(
@@ -86,7 +94,7 @@ def _sampled(problem: Problem | JointProblem, wanted: Wanted) -> Fit | JointFit:
     from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
 
-    directory = wanted.folder / f"{problem.name}-seed{wanted.seed}"
+    directory = run_directory(problem.name, wanted.seed, wanted.folder)
     known = directory.is_dir() and any(directory.iterdir())
     with fit_progress(problem.name) as (count, progress):
         fit = sample(

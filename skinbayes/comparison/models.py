@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,8 @@ from skinbayes.comparison.cross_check import CrossCheck, cross_check
 from skinbayes.comparison.prior_widths import PriorWidths, prior_widths
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut, RefitProgress, Scores, difference, score
 from skinbayes.comparison.verdicts import (
+    AHEAD,
+    Statement,
     few_levels,
     level_question,
     plus_minus,
@@ -97,42 +99,45 @@ class Comparison:
 
     def sentences(self) -> list[str]:
         """What the comparison says, in words."""
+        return [statement.text for statement in self.statements()]
+
+    def statements(self) -> list[Statement]:
+        """The sentences, each with what it does."""
         best, said = self.models[0], []
         for other in self.models[1:]:
             gap = plus_minus(-other.elpd_difference, other.elpd_difference_se)
             computed = np.hypot(best.monte_carlo_error, other.monte_carlo_error)
             if other.elpd_difference_se is None and other.weight is not None and computed > 0:
                 gap += f" (computed to ± {computed:.2f})"
-            if other.told_apart:
-                said.append(f"'{best.name}' predicts left-out data better than '{other.name}', by {gap}.")
-            else:
-                said.append(
-                    f"These data do not tell '{best.name}' and '{other.name}' apart: their predictive densities differ by {gap}."
-                )
-        said += [*self._on_evidence(), *self.prior_widths.sentences()]
-        said += [check.sentence() for check in self.cross_checks]
+            text = (
+                f"'{best.name}' predicts left-out data better than '{other.name}', by {gap}."
+                if other.told_apart
+                else f"These data do not tell '{best.name}' and '{other.name}' apart: their predictive densities differ by {gap}."
+            )
+            said.append(Statement(text, AHEAD))
+        said += [*self._on_evidence(), *self.prior_widths.statements()]
+        said += [Statement(check.sentence()) for check in self.cross_checks]
         if self.grouped_by:
-            said.append(pointwise_question(self.grouped_by))
+            said.append(Statement(pointwise_question(self.grouped_by)))
         if self.rows < FEW_ROWS:
             said.append(
-                f"With {self.rows} data leave-one-out can hardly decide anything; a standard error over them would mean nothing "
-                "and is not given."
+                Statement(
+                    f"With {self.rows} data leave-one-out can hardly decide anything; a standard error over them would mean "
+                    "nothing and is not given."
+                )
             )
         for column in self.columns:
             said += self._on_levels(column)
-        for model in self.models:
-            said += unreliable_data(model.name, model.unreliable_rows, model.refitted_rows, self.rows)
-            for left_out in model.left_out.values():
-                said += unreliable_levels(model.name, left_out)
-            if not model.converged:
-                said.append(f"'{model.name}' has NOT CONVERGED; its numbers are provisional.")
+        said += on_sampling(self.models, self.rows)
         if any(model.weight is None for model in self.models):
             said.append(
-                "There are no stacking weights: they hang on every single datum, and some of these numbers are unreliable."
+                Statement(
+                    "There are no stacking weights: they hang on every single datum, and some of these numbers are unreliable."
+                )
             )
         return said
 
-    def _on_evidence(self) -> list[str]:
+    def _on_evidence(self) -> list[Statement]:
         """What the evidence says, and whether it agrees with the predictive densities."""
         if not self.has_evidence:
             return []
@@ -145,12 +150,12 @@ class Comparison:
             "prior of one that they determine costs evidence."
         )
         if first.name == self.models[0].name or first.weight is None:
-            return [said]
-        return [
-            said,
+            return [Statement(said, AHEAD)]
+        instead = (
             f"Left-out data are predicted best by '{self.models[0].name}' instead: predictive densities ask how well a fitted "
-            "model predicts one more datum, the evidence how well the priors predicted all of them.",
-        ]
+            "model predicts one more datum, the evidence how well the priors predicted all of them."
+        )
+        return [Statement(said, AHEAD), Statement(instead, AHEAD)]
 
     @property
     def converged(self) -> bool:
@@ -167,19 +172,19 @@ class Comparison:
         """The models, that of the largest evidence first."""
         return sorted(self.models, key=lambda model: -(model.log_evidence or 0.0))
 
-    def _on_levels(self, column: str) -> list[str]:
-        said = [level_question(column, self.grouped_by)]
+    def _on_levels(self, column: str) -> list[Statement]:
+        said = [Statement(level_question(column, self.grouped_by))]
         ordered = sorted(self.models, key=lambda model: -model.left_out[column].elpd)
         best = ordered[0]
         for other in ordered[1:]:
             found = difference(best.left_out[column].pointwise, other.left_out[column].pointwise)
             gap = plus_minus(found.value, found.error)
-            if found.sign:
-                said.append(f"'{best.name}' does so better than '{other.name}', by {gap}.")
-            else:
-                said.append(
-                    f"In that '{best.name}' and '{other.name}' are not told apart: they differ by {gap}."
-                )
+            text = (
+                f"'{best.name}' does so better than '{other.name}', by {gap}."
+                if found.sign
+                else f"In that '{best.name}' and '{other.name}' are not told apart: they differ by {gap}."
+            )
+            said.append(Statement(text, AHEAD))
         return said + few_levels(best.left_out[column])
 
     def to_dict(self) -> dict[str, Any]:
@@ -296,6 +301,18 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
         )
     models.sort(key=lambda model: -model.elpd_loo)
     return Comparison(tuple(models), pointwise.shape[1], grouped)
+
+
+def on_sampling(models: Iterable[ComparedModel], rows: int) -> list[Statement]:
+    """What is to be known of the numbers of each model: what was sampled anew, what is doubtful, whether it has converged."""
+    said = []
+    for model in models:
+        said += unreliable_data(model.name, model.unreliable_rows, model.refitted_rows, rows)
+        for left_out in model.left_out.values():
+            said += unreliable_levels(model.name, left_out)
+        if not model.converged:
+            said.append(Statement(f"'{model.name}' has NOT CONVERGED; its numbers are provisional."))
+    return said
 
 
 def grouped_by(fits: Sequence[Fit | JointFit]) -> tuple[str, ...]:

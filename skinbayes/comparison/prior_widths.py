@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from scipy.optimize import brentq
 
+from skinbayes.comparison.verdicts import AHEAD, Statement
 from skinbayes.fit.other_priors import OtherPriors
 from skinbayes.phrases import and_list, number
 from skinbayes.problem.other_priors import priors_of, with_priors
@@ -99,9 +100,13 @@ class PriorWidths:
 
     def sentences(self) -> list[str]:
         """The findings in words."""
-        said = [self._warning(*entry) for entry in self.same_model]
+        return [statement.text for statement in self.statements()]
+
+    def statements(self) -> list[Statement]:
+        """The sentences, each with what it does."""
+        said = [Statement(self._warning(*entry)) for entry in self.same_model]
         pairs = dict.fromkeys((scan.preferred, scan.other) for scan in self.scans)
-        return said + [sentence for pair in pairs for sentence in self._on_pair(*pair)]
+        return said + [statement for pair in pairs for statement in self._on_pair(*pair)]
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
@@ -119,30 +124,36 @@ class PriorWidths:
             "about the data: make a prior wide enough, and its model loses against any other."
         )
 
-    def _on_pair(self, preferred: str, other: str) -> list[str]:
+    def _on_pair(self, preferred: str, other: str) -> list[Statement]:
         scans = [scan for scan in self.scans if (scan.preferred, scan.other) == (preferred, other)]
         if scans[0].log_bayes_factor < 2 * scans[0].error:
             return []
-        start, said = f"The preference of the evidence for '{preferred}' over '{other}'", []
+        start = f"The preference of the evidence for '{preferred}' over '{other}'"
+        said: list[Statement] = []
         turning = [scan.may(scan.turns_at) for scan in scans if scan.turns_at]
         turning += [scan.narrowed(scan.turns_at_width) for scan in scans if scan.turns_at_width]
         if turning:
-            said.append(f"{start} turns if {', or if '.join(turning)}.")
+            said.append(Statement(f"{start} turns if {', or if '.join(turning)}.", AHEAD))
         staying = [scan for scan in scans if not scan.turns_at and scan.known_to > 1]
         if staying:
-            said.append(f"{'It' if turning else start} stays if {_one_of(staying)}.")
+            said.append(Statement(f"{'It' if turning else start} stays if {_one_of(staying)}.", AHEAD))
         for scan in scans:
             value, part = scan.weakest
             if not scan.turns_at_width and value < FADES * scan.log_bayes_factor:
-                said.append(f"ln of their Bayes factor fades to {value:.2f} if {scan.narrowed(part)}.")
+                said.append(
+                    Statement(f"ln of their Bayes factor fades to {value:.2f} if {scan.narrowed(part)}.")
+                )
         short = [scan for scan in scans if not scan.turns_at and scan.known_to < REACH[-1]]
         if nothing := [scan.quantity for scan in short if scan.known_to == 1]:
             said.append(
-                f"Whether it stays with much wider priors of {and_list(nothing)} these draws cannot tell (--sensitivity "
-                "samples anew)."
+                Statement(
+                    f"Whether it stays with much wider priors of {and_list(nothing)} these draws cannot tell (--sensitivity "
+                    "samples anew)."
+                )
             )
         if held := dict.fromkeys(text for scan in scans for text in scan.held):
-            said.append(f"What was not made as wide, because it cannot be: {and_list(list(held))}.")
+            text = f"What was not made as wide, because it cannot be: {and_list(list(held))}."
+            said.append(Statement(text))
         return said
 
 

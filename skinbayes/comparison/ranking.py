@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from skinbayes.comparison.models import Comparison, compare_scores, grouped_by
+from skinbayes.comparison.models import Comparison, compare_scores, grouped_by, on_sampling
 from skinbayes.comparison.noise_floor import NoiseFloor, noise_floor
 from skinbayes.comparison.parts import SINGLE
 from skinbayes.comparison.scores import Scores, difference
 from skinbayes.comparison.verdicts import (
+    AHEAD,
+    LOSES,
+    Statement,
     few_levels,
     level_question,
     plus_minus,
     pointwise_question,
-    unreliable_data,
-    unreliable_levels,
 )
 from skinbayes.phrases import singular
 
@@ -91,25 +92,22 @@ class AgainstBaselines:
 
     def sentences(self) -> list[str]:
         """Whether the fit beats, equals or loses to each baseline model in each question, in words."""
-        said: list[str] = []
+        return [statement.text for statement in self.statements()]
+
+    def statements(self) -> list[Statement]:
+        """The sentences, each with what it does."""
+        said: list[Statement] = []
         for question in dict.fromkeys(ranked.question for ranked in self.ranking):
             said += self._question(question)
             said += [self._words(ranked) for ranked in self.ranking if ranked.question == question]
             if question != SINGLE:
                 said += few_levels(self.comparison.models[0].left_out[question])
-        for model in self.comparison.models:
-            said += unreliable_data(
-                model.name, model.unreliable_rows, model.refitted_rows, self.comparison.rows
-            )
-            for left_out in model.left_out.values():
-                said += unreliable_levels(model.name, left_out)
-            if not model.converged:
-                said.append(f"'{model.name}' has NOT CONVERGED; its numbers are provisional.")
+        said += on_sampling(self.comparison.models, self.comparison.rows)
         if self.floor is not None:
-            said.append(self.floor.sentence())
+            said.append(Statement(self.floor.sentence()))
             noise = self.scatter[self.name].noise
             if noise is not None:
-                said.append(self.floor.against(noise))
+                said.append(Statement(self.floor.against(noise)))
         return said
 
     def headers(self) -> list[str]:
@@ -167,25 +165,28 @@ class AgainstBaselines:
             "sentences": self.sentences(),
         }
 
-    def _question(self, question: str) -> list[str]:
+    def _question(self, question: str) -> list[Statement]:
         grouped = self.comparison.grouped_by
         if question == SINGLE:
-            return [pointwise_question(grouped)] if grouped else []
-        return [level_question(question, grouped)]
+            return [Statement(pointwise_question(grouped))] if grouped else []
+        return [Statement(level_question(question, grouped))]
 
-    def _words(self, ranked: RankedAgainst) -> str:
+    def _words(self, ranked: RankedAgainst) -> Statement:
         what = "a left-out datum" if ranked.question == SINGLE else f"a left-out {singular(ranked.question)}"
         gap = plus_minus(abs(ranked.difference), ranked.difference_se, 1)
         if ranked.verdict == VERDICTS[0]:
-            return (
+            return Statement(
                 f"'{self.name}' equals '{ranked.baseline_model}' in predicting {what}: they differ by {gap}, "
                 "which is no difference."
             )
         if ranked.verdict == VERDICTS[1]:
-            return f"'{self.name}' beats '{ranked.baseline_model}' in predicting {what}, by {gap}."
-        return (
+            return Statement(
+                f"'{self.name}' beats '{ranked.baseline_model}' in predicting {what}, by {gap}.", AHEAD
+            )
+        return Statement(
             f"'{self.name}' LOSES to '{ranked.baseline_model}' in predicting {what}, by {gap}: "
-            "its physics makes this prediction worse."
+            "its physics makes this prediction worse.",
+            LOSES,
         )
 
 

@@ -4,10 +4,27 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from skinbayes.comparison.parts import ORDER
 from skinbayes.comparison.scores import FEW_ROWS, LeftOut
 from skinbayes.phrases import plural, singular
+
+AHEAD, LOSES, DOUBT, REMARK = "ahead", "loses", "doubt", "remark"
+
+
+class Statement(NamedTuple):
+    """A sentence of a comparison, and what it does.
+
+    Attributes
+    ----------
+    text : the sentence
+    kind : ``AHEAD`` if it says which model is, ``LOSES`` if a theory loses to a model without it, ``DOUBT`` if numbers cannot be
+        trusted, ``REMARK`` if it says how to read them
+    """
+
+    text: str
+    kind: str = REMARK
 
 
 def pointwise_question(grouped_by: Sequence[str]) -> str:
@@ -57,32 +74,34 @@ def level_question(column: str, grouped_by: Sequence[str]) -> str:
     return f"Leaving out one {singular(column)} at a time {asks}."
 
 
-def unreliable_data(name: str, unreliable: int, refitted: int, count: int) -> list[str]:
+def unreliable_data(name: str, unreliable: int, refitted: int, count: int) -> list[Statement]:
     """Sentences on single data whose score is doubtful, and on those that were left out by a refit."""
     said = []
     if refitted:
         what = f"each of the {count} data" if refitted == count else f"{refitted} of {count} data"
-        said.append(f"'{name}' was sampled anew without {what}, one at a time.")
+        said.append(Statement(f"'{name}' was sampled anew without {what}, one at a time."))
     if unreliable:
         remedy = (
             "refits without them leave their numbers uncertain too"
             if refitted
             else "refits without them would tell, which need the model and its data"
         )
-        said.append(
+        text = (
             f"'{name}': {unreliable} of {count} data influence the posterior so strongly that leaving them out cannot be "
             f"estimated by importance sampling (Pareto k above the limit); {remedy}."
         )
+        said.append(Statement(text, DOUBT))
     return said
 
 
-def unreliable_levels(name: str, left_out: LeftOut) -> list[str]:
+def unreliable_levels(name: str, left_out: LeftOut) -> list[Statement]:
     """Sentences on levels whose score is doubtful, and on those that were fitted anew."""
     said = []
     count, what = len(left_out.levels), many(left_out.column)
     again = [level for level in left_out.refitted if level not in left_out.unreliable]
     if again:
-        said.append(f"'{name}' was sampled anew without {_some(again)}, {len(again)} of {count} {what}.")
+        text = f"'{name}' was sampled anew without {_some(again)}, {len(again)} of {count} {what}."
+        said.append(Statement(text))
     if left_out.unreliable:
         failed = [level for level in left_out.unreliable if level in left_out.refitted]
         remedy = (
@@ -90,21 +109,24 @@ def unreliable_levels(name: str, left_out: LeftOut) -> list[str]:
             if len(failed) == len(left_out.unreliable)
             else "refits without them would tell, which need the model and its data"
         )
-        said.append(
+        text = (
             f"'{name}': {len(left_out.unreliable)} of {count} {what} ({_some(left_out.unreliable)}) influence the posterior so "
             f"strongly that leaving them out cannot be estimated by importance sampling (Pareto k above the limit); {remedy}."
         )
+        said.append(Statement(text, DOUBT))
     return said
 
 
-def few_levels(left_out: LeftOut) -> list[str]:
+def few_levels(left_out: LeftOut) -> list[Statement]:
     """Why there is no standard error over levels, if there is none."""
     count = len(left_out.levels)
     if count >= FEW_ROWS:
         return []
+    what = many(left_out.column)
     return [
-        f"With {count} {many(left_out.column)} a standard error of what is predicted for them would mean nothing and is not "
-        "given."
+        Statement(
+            f"With {count} {what} a standard error of what is predicted for them would mean nothing and is not given."
+        )
     ]
 
 

@@ -8,14 +8,14 @@ equation of the contact is ``Σ_n ∫₀^∞ S(x/a) J_νm(x) J_νn(x) dx/x g_n =
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import gamma, jv, yv
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.contact.hertz import sphere_contact
 from skinbayes.contact.layers import layered_modulus
 from skinbayes.contact.line_contact import line_contact
@@ -60,6 +60,14 @@ class LayerStack:
         self._layers = {"moduli": moduli, "poisson_ratios": poisson_ratios, "thicknesses": thicknesses}
         self.surface = float(reduced_modulus(moduli[0], poisson_ratios[0]))
         self.deepest = float(reduced_modulus(moduli[-1], poisson_ratios[-1]))
+
+    def contacts(
+        self, loads: ArrayLike, radius: float, order: float
+    ) -> Iterator[tuple[float, float, FloatArray, FloatArray]]:
+        """Each load, N or N/m, on a radius, m, with the contact that it makes: a, m, and what `solve` finds for it."""
+        for load in np.atleast_1d(np.asarray(loads, dtype=np.float64)).tolist():
+            size = self.size(load, radius, order)
+            yield load, size, *self.solve(size, order)
 
     def solve(self, size: float, order: float) -> tuple[FloatArray, FloatArray]:
         """``M⁻¹ e_0`` with ``M_mn = ∫S J_νm J_νn dx/x``, and ``∫S √(π/2x) J_νn dx/x``, shape ``(N,)`` each, for a, m."""

@@ -108,9 +108,7 @@ def layered_sphere_contact(
     """
     stack = LayerStack(moduli, poisson_ratios, thicknesses, "sphere_radius", sphere_radius)
     rows = []
-    for force in np.atleast_1d(np.asarray(normal_force, dtype=np.float64)).tolist():
-        size = stack.size(force, sphere_radius, SPHERE)
-        amounts, sinking = stack.solve(size, SPHERE)
+    for force, size, amounts, sinking in stack.contacts(normal_force, sphere_radius, SPHERE):
         slopes = 2 * stack.surface * size / (3 * np.pi * sphere_radius) * amounts
         pressure = _pressure_of_ball(slopes)
         depth = 2 * size / stack.surface * (slopes @ sinking)
@@ -162,9 +160,7 @@ def layered_line_contact(
     """
     stack = LayerStack(moduli, poisson_ratios, thicknesses, "cylinder_radius", cylinder_radius)
     rows = []
-    for load in np.atleast_1d(np.asarray(load_per_length, dtype=np.float64)).tolist():
-        size = stack.size(load, cylinder_radius, CYLINDER)
-        amounts, _ = stack.solve(size, CYLINDER)
+    for load, size, amounts, _ in stack.contacts(load_per_length, cylinder_radius, CYLINDER):
         pressure = _pressure_of_cylinder(stack.surface * size / (4 * cylinder_radius) * amounts)
         equivalent = stack.surface * amounts[0] / 2
         rows.append(

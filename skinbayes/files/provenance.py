@@ -13,6 +13,9 @@ from skinbayes.files.toml_text import explain, read_toml
 Text = Annotated[str, Field(min_length=1)]
 Doi = Annotated[str, Field(pattern=r"^10\.[0-9]{4,9}/[^\s\"<>]+$")]
 
+TEXTS = ("licence", "attribution", "where", "how_read", "digitised_by", "transformation", "spread")
+"""Texts of a `Provenance` that are shown with the data, in their order."""
+
 
 def _as_list(value: Any) -> Any:
     return [value] if isinstance(value, str) else value

@@ -99,15 +99,15 @@ class Records:
     ----------
     separator : what stands between cells, found in the text if it is not given
     header : header, once it is known: a line that looks like a comment may be a row below it
-    comment : the last comment
+    comments : those above the header, each with its number
     """
 
     def __init__(self, text: str, path: Path, separator: str = "", comments: bool = True) -> None:
         self.separator = separator or _separator(text, path)
         self.header: tuple[str, ...] = ()
-        self.comment = ""
+        self.comments: list[tuple[int, str]] = []
         self._path, self._lines = path, numbered_lines(text, path)
-        self._first, self._inside, self._comments = 0, False, comments
+        self._first, self._inside, self._may_comment = 0, False, comments
         self._reader = csv.reader(self._feed(), **self._dialect())
 
     def __iter__(self) -> Records:
@@ -132,8 +132,9 @@ class Records:
             if not self._inside:
                 if not line.strip() or (number == 1 and _STATED.fullmatch(line)):
                     continue
-                if self._comments and line.lstrip().startswith("#") and not self._may_be_row(line):
-                    self.comment = line
+                if self._may_comment and line.lstrip().startswith("#") and not self._may_be_row(line):
+                    if not self.header:
+                        self.comments.append((number, line))
                     continue
                 self._first, self._inside = number, True
             yield line

@@ -10,10 +10,8 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.columns import read_quantity
-from skinbayes.files.reading import read_file
-from skinbayes.files.separated import decoded
 from skinbayes.files.stated_surface import MEASURED, StatedSurface, stated_surface
-from skinbayes.files.table import LARGEST_TABLE, CsvTable, Problems, quoted, read_table
+from skinbayes.files.table import CsvTable, Problems, quoted, read_table
 from skinbayes.roughness import CONVENTIONS, TabulatedSpectrum, rms_height, rms_slope, total_area_ratio
 from skinbayes.units import describe_unit, format_quantity, split_header
 from skinbayes.vocabulary import Quantity, suggestions
@@ -94,21 +92,18 @@ def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> Tabu
                 spectrum = TabulatedSpectrum.from_profile(wavevector, power)
     except InputError as error:
         raise InputError(f"{path}, column '{power_name}': {error}") from None
-    return _normalised(path, spectrum, power_name, _merged(_comments(path), stated or StatedSurface()))
+    return _normalised(path, spectrum, power_name, _merged(_comments(table), stated or StatedSurface()))
 
 
-def _comments(path: Path) -> StatedSurface:
+def _comments(table: CsvTable) -> StatedSurface:
     """What comments above the header state."""
     given: dict[str, str] = {}
     lines: dict[str, int] = {}
-    text = decoded(read_file(path, LARGEST_TABLE, "a CSV file"), path)
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line.lstrip().startswith("#"):
-            break
+    for number, line in table.comments:
         key, mark, value = line.lstrip("# \t").replace("=", ":", 1).partition(":")
         if mark and key.strip() in StatedSurface._fields:
             given[key.strip()], lines[key.strip()] = value.strip().strip("\"'"), number
-    return stated_surface(given, lambda key: f"{path}, line {lines[key]}: {key}")
+    return stated_surface(given, lambda key: f"{table.path}, line {lines[key]}: {key}")
 
 
 def _merged(comments: StatedSurface, stated: StatedSurface) -> StatedSurface:

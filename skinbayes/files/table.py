@@ -76,6 +76,7 @@ class CsvTable:
     lines, rows : line number and cells of every row of data
     sha256 : of the bytes of the file
     row_word : what ``lines`` count, ``"line"`` of a file or ``"row"``
+    comments : line number and text of each comment above the header
     """
 
     path: Path
@@ -85,6 +86,7 @@ class CsvTable:
     rows: tuple[tuple[str, ...], ...]
     sha256: str
     row_word: str = "line"
+    comments: tuple[tuple[int, str], ...] = ()
 
     @property
     def header_place(self) -> str:
@@ -143,7 +145,8 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | Non
         raise InputError(
             f"{path}, line {header_line}: {len(header)} columns; expected a table of at most {MOST_COLUMNS}"
         )
-    _check_header(header, records.comment, f"{path}, line {header_line}")
+    comments = tuple(records.comments)
+    _check_header(header, comments[-1][1] if comments else "", f"{path}, line {header_line}")
     records.header = header
     lines: list[int] = []
     rows: list[tuple[str, ...]] = []
@@ -170,7 +173,8 @@ def read_table(path: Path, *, max_rows: int = MAX_ROWS, problems: Problems | Non
     if len(named) < len(header):
         header, rows = tuple(header[i] for i in named), [tuple(row[i] for i in named) for row in rows]
     rows = with_points(path, header, lines, rows, records.separator)
-    return CsvTable(path, header, header_line, tuple(lines), tuple(rows), hashlib.sha256(data).hexdigest())
+    digest = hashlib.sha256(data).hexdigest()
+    return CsvTable(path, header, header_line, tuple(lines), tuple(rows), digest, comments=comments)
 
 
 def _length(cells: tuple[str, ...], expected: int) -> str:

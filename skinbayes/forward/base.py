@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -24,6 +24,27 @@ Inputs = Mapping[str, FloatArray]
 
 Ranges = Mapping[str, tuple[float, float]]
 """Name of an input to its smallest and largest value over the rows and nearly all of the prior, SI."""
+
+Multiples = Mapping[str, tuple[str, float]]
+"""Name of an input to another one of which it is the same multiple at all rows, and the multiple."""
+
+
+class TiedRanges(dict[str, tuple[float, float]]):
+    """`Ranges` of inputs some of which vary together.
+
+    Attributes
+    ----------
+    multiples : which, and how
+    """
+
+    def __init__(self, ends: Ranges, multiples: Multiples) -> None:
+        super().__init__(ends)
+        self.multiples = multiples
+
+
+def multiples_of(ranges: Ranges) -> Multiples:
+    """Inputs that are multiples of others; none where nothing is known of that."""
+    return ranges.multiples if isinstance(ranges, TiedRanges) else {}
 
 
 @dataclass(frozen=True)
@@ -75,6 +96,39 @@ class Profile:
     evaluate: Callable[[Inputs, Tables, FloatArray], FloatArray]
     needs: tuple[str, ...] = ()
     uniform: tuple[str, ...] = ()
+
+
+def profiles_against(
+    abscissa: str,
+    titles: Mapping[str, str],
+    grid: Callable[[Inputs, Tables], FloatArray],
+    evaluate: Callable[..., FloatArray],
+    *,
+    called: str,
+    uniform: tuple[str, ...] = (),
+) -> tuple[Profile, ...]:
+    """Profiles of several ordinates against one abscissa, one below the other.
+
+    Parameters
+    ----------
+    abscissa : a quantity
+    titles : each ordinate to the title of its profile
+    grid, uniform : as those of a `Profile`
+    evaluate : as that of a `Profile`, with the ordinate as ``observable``
+    called : end of the names of the profiles
+    """
+    return tuple(
+        Profile(
+            name=f"{ordinate}_against_{called}",
+            title=title,
+            abscissa=abscissa,
+            ordinate=ordinate,
+            grid=grid,
+            evaluate=partial(evaluate, observable=ordinate),
+            uniform=uniform,
+        )
+        for ordinate, title in titles.items()
+    )
 
 
 def nothing_derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:

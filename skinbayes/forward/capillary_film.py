@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables, profiles_against
 from skinbayes.forward.contact_inputs import (
     LAYERS_GO_WITH,
     PRESSURE_ALTERNATIVES,
@@ -96,16 +96,8 @@ def film_profiles(closure: Closure) -> tuple[Profile, ...]:
         "mean_separation": "Mean separation against the water film",
         "mean_separation_wet": "Mean separation in the wet area against the water film",
     }
-    return tuple(
-        Profile(
-            name=f"{observable}_against_film",
-            title=title,
-            abscissa="film_thickness",
-            ordinate=observable,
-            grid=_grid,
-            evaluate=partial(_profile, observable=observable, closure=closure),
-        )
-        for observable, title in titles.items()
+    return profiles_against(
+        "film_thickness", titles, _grid, partial(_profile, closure=closure), called="film"
     )
 
 

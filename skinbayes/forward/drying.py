@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables, profiles_against
 from skinbayes.forward.capillary_film import CLOSURES, Closure, film_profiles
 from skinbayes.forward.deduplicated_rows import along_rows
 from skinbayes.forward.drying_inputs import (
@@ -70,17 +70,7 @@ def _timeline(closure: Closure) -> tuple[Profile, ...]:
         "relative_contact_area": "Contact area against time",
         "friction_coefficient": "Friction against time",
     }
-    return tuple(
-        Profile(
-            name=f"{observable}_against_time",
-            title=title,
-            abscissa="time",
-            ordinate=observable,
-            grid=_grid,
-            evaluate=partial(_profile, observable=observable, closure=closure),
-        )
-        for observable, title in titles.items()
-    )
+    return profiles_against("time", titles, _grid, partial(_profile, closure=closure), called="time")
 
 
 def drying_model(closure: Closure = "gaussian") -> ForwardModel:

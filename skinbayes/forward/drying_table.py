@@ -10,18 +10,18 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.emulation import Box, Progress, kept_table
-from skinbayes.forward.base import ForwardModel, Ranges, Tables
+from skinbayes.forward.base import ForwardModel, Ranges, Tables, multiples_of
 from skinbayes.forward.capillary_film import WATER_INPUTS
 from skinbayes.forward.contact_inputs import nominal_pressure_of, one_layer_skin_of, spectrum_of
-from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
+from skinbayes.forward.corners import CONTACT_INPUTS, NO_TABLE, corners, known_ranges
 from skinbayes.roughness import TabulatedSpectrum, rms_height
 from skinbayes.wetting import VERSION_OF_BRIDGES, BridgeTable, bridge_table, skin_groups
 
 
 def table_over(
     ranges: Ranges, optional: dict[str, float], tables: Tables, progress: Progress | None = None
-) -> BridgeTable | None:
-    """Return curves of bridges for all skins within ``ranges``, or None if there are none or too many.
+) -> BridgeTable | str:
+    """Return curves of bridges for all skins within ``ranges``, or why there are none; empty if no bridges form.
 
     Parameters
     ----------
@@ -30,20 +30,24 @@ def table_over(
     tables : spectrum, if it is measured
     progress : called with the number of skins solved and their total
     """
-    known = known_ranges(ranges, optional)
+    known, multiples = known_ranges(ranges, optional), multiples_of(ranges)
     if not isinstance(tables.spectrum, TabulatedSpectrum | None):
-        return None
+        return NO_TABLE
     if "hardening_film" in ranges:
         moduli = (*known["young_modulus_layer"], *known["young_modulus_layer_dry"])
         known["young_modulus_layer"] = (min(moduli), max(moduli))
-    inputs = corners(known, (*WATER_INPUTS, *CONTACT_INPUTS))
+        # a layer that hardens leaves what it is tied to
+        multiples = {
+            name: tie for name, tie in multiples.items() if "young_modulus_layer" not in (name, tie[0])
+        }
+    inputs = corners(known, (*WATER_INPUTS, *CONTACT_INPUTS), multiples)
     if inputs is None:
-        return None
+        return NO_TABLE
     spectrum, skin, load = spectrum_of(inputs, tables), one_layer_skin_of(inputs), nominal_pressure_of(inputs)
     wetting = np.cos(inputs["contact_angle_skin"]) + np.cos(inputs["contact_angle_counterface"])
     wetting_tension = inputs["surface_tension"] * np.maximum(wetting, 0.0)
     if not wetting_tension.max() > 0:
-        return None
+        return ""
     height = np.broadcast_to(rms_height(spectrum), load.shape)
     groups = skin_groups(
         load,
@@ -56,12 +60,13 @@ def table_over(
     modulus = inputs["young_modulus" if "young_modulus" in inputs else "young_modulus_bulk"]
     depth = float(np.max(load / modulus)) / known["film_floor"][0]
     box = Box.around(groups)
-    return kept_table(
+    table = kept_table(
         "bridges",
         {"version": VERSION_OF_BRIDGES, "ends": box.ends, "depth": depth, "spectrum": tables.digest()},
         BridgeTable,
         lambda _: bridge_table(box, depth=depth, spectrum=tables.spectrum, progress=progress),
     )
+    return NO_TABLE if table is None else table
 
 
 def prepared_drying(
@@ -69,8 +74,8 @@ def prepared_drying(
 ) -> ForwardModel:
     """Return a model of drying skin whose evaluation takes a ``table`` with the table for ``ranges``, if there is one."""
     table = table_over(ranges, model.defaults(ranges), tables, progress)
-    if table is None:
-        return model
+    if isinstance(table, str):
+        return replace(model, accuracy=table)
     return replace(
         model,
         evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),

@@ -23,7 +23,7 @@ from skinbayes.emulation import (
     refined,
 )  # fmt: skip
 from skinbayes.errors import InputError
-from skinbayes.forward.base import ForwardModel, Inputs, Ranges, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Multiples, Ranges, Tables, multiples_of
 
 _TRIALS = 100
 _WEIGHTS = 1 << 21  # of nodes, held at a time
@@ -81,6 +81,7 @@ class Emulated:
     found : columns are the observables
     scales : of each input of the box: what it is divided by, 0 for a logarithm
     held : inputs that are not finite, at the value they have
+    multiples : inputs of the model that are multiples of others, and no inputs of the box
     positive : which observables are interpolated in their logarithm
     """
 
@@ -88,6 +89,7 @@ class Emulated:
     found: Interpolant
     scales: Mapping[str, float]
     held: Mapping[str, float]
+    multiples: Multiples
     positive: Sequence[bool]
 
     def evaluate(self, inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
@@ -97,6 +99,8 @@ class Emulated:
         inside = self.found.box.covers(places) & (tables.flow_curves is None)
         for name, value in self.held.items():
             inside = inside & (inputs.get(name, value) == value)
+        for name, (of, times) in self.multiples.items():
+            inside = inside & np.isclose(inputs[name], times * inputs[of], rtol=1e-9, atol=0.0)
         vectors, rows = inside.shape
         near = [np.where(np.abs(x) < 1 + 1e-6, x, 0.0) for x in self.found.box.scaled(places)]
         near = [np.broadcast_to(x, (vectors, x.shape[1])) for x in near]
@@ -132,19 +136,20 @@ def _prepare(
         raise InputError(
             f"the forward model '{model.name}' is emulated over {', '.join(unknown)}, which it does not take"
         )
-    varying = {name for name, (low, high) in known.items() if high > low}
+    multiples = {name: tie for name, tie in multiples_of(ranges).items() if {name, tie[0]} <= set(known)}
+    varying = {name for name, (low, high) in known.items() if high > low and name not in multiples}
     others = sorted(varying - set(varying if over is None else over))
     if others or tables.flow_curves is not None:
         return _directly(model, f"{' and '.join(others) or 'the liquid'} may vary, too")
     if not varying:
         return replace(model, prepare=None)
     held = {name: low for name, (low, high) in known.items() if not np.isfinite([low, high]).all()}
-    finite = {name: ends for name, ends in known.items() if name not in held}
+    finite = {name: ends for name, ends in known.items() if name not in (*held, *multiples)}
     scales = {
         name: 0.0 if low > 0 else max(abs(low), abs(high)) or 1.0 for name, (low, high) in finite.items()
     }
     box = Box.around(_scaled({name: np.array(ends) for name, ends in finite.items()}, scales))
-    shared: Any = {"model": model, "tables": tables, "scales": scales, "held": held}
+    shared: Any = {"model": model, "tables": tables, "scales": scales, "held": held, "multiples": multiples}
 
     def build(unfinished: Unfinished) -> _Found | None:
         with Tasks(cores, progress=progress, kept=unfinished) as tasks:
@@ -161,14 +166,15 @@ def _prepare(
         return None if table is None else _Found(table, tuple(positive.tolist()))
 
     key = {"version": [_VERSION, version], "model": model.name, "chosen": dict(model.chosen), "ends": known,
-           "observables": model.observables, "tolerance": tolerance, "most": most, "spectrum": tables.digest()}  # fmt: skip
+           "observables": model.observables, "tolerance": tolerance, "most": most, "spectrum": tables.digest(),
+           **({"multiples": {**multiples}} if multiples else {})}  # fmt: skip
     kept = kept_table("emulated", None if version is None else key, _Found, build)
     if kept is None:
         return _directly(
             model, f"it does not come to {tolerance:g} on {most} nodes, or gives no number at some"
         )
     found = kept.table
-    fast = Emulated(model, found, scales, held, kept.positive)
+    fast = Emulated(model, found, scales, held, multiples, kept.positive)
     return replace(
         model,
         evaluate=fast.evaluate,
@@ -199,12 +205,14 @@ def _solve(
     tables: Tables,
     scales: Mapping[str, float],
     held: Mapping[str, float],
+    multiples: Multiples,
     positive: ArrayLike = False,
 ) -> FloatArray:
     """Observables, or their logarithms, at M places, shape ``(M, observables)``."""
     size = max(len(x) for x in places.values())
     inputs = {name: x * scales[name] if scales[name] else np.exp(x) for name, x in places.items()}
     inputs |= {name: np.array([value]) for name, value in held.items()}
+    inputs |= {name: times * inputs[of] for name, (of, times) in multiples.items()}
     with np.errstate(all="ignore"):
         found = model.evaluate({name: x[:, None] for name, x in inputs.items()}, tables)
         values = _columns(found, model.observables, (size, 1))[:, 0]

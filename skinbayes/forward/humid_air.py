@@ -16,7 +16,7 @@ import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import total_contact_area, twice_stress_variance
-from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables, profiles_against
 from skinbayes.forward.capillary_film import CLOSURES, Closure
 from skinbayes.forward.contact_inputs import (
     GOES_WITH,
@@ -168,17 +168,13 @@ def _profiles(closure: Closure) -> tuple[Profile, ...]:
         "friction_coefficient": "Friction against relative humidity",
         "relative_contact_area": "Contact area against relative humidity",
     }
-    predicted = (
-        Profile(
-            name=f"{observable}_against_humidity",
-            title=title,
-            abscissa="relative_humidity",
-            ordinate=observable,
-            grid=_grid,
-            evaluate=partial(_profile, observable=observable, closure=closure),
-            uniform=("young_modulus_layer",),
-        )
-        for observable, title in titles.items()
+    predicted = profiles_against(
+        "relative_humidity",
+        titles,
+        _grid,
+        partial(_profile, closure=closure),
+        called="humidity",
+        uniform=("young_modulus_layer",),
     )
     modulus = Profile(
         name="young_modulus_against_humidity",

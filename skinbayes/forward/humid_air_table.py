@@ -11,9 +11,16 @@ import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.emulation import Box, Progress, kept_table
-from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Ranges, Tables
+from skinbayes.forward.base import (
+    ROUGHNESS_INPUTS,
+    ForwardModel,
+    Inputs,
+    Ranges,
+    Tables,
+    multiples_of,
+)
 from skinbayes.forward.contact_inputs import GOES_WITH, nominal_pressure_of, one_layer_skin_of, spectrum_of
-from skinbayes.forward.corners import CONTACT_INPUTS, corners, known_ranges
+from skinbayes.forward.corners import CONTACT_INPUTS, NO_TABLE, corners, known_ranges
 from skinbayes.forward.humid_air_inputs import (
     AIR_INPUTS,
     at_skin,
@@ -79,8 +86,8 @@ class TabulatedBridges:
 
 def bridges_over(
     ranges: Ranges, optional: dict[str, float], tables: Tables, progress: Progress | None
-) -> TabulatedBridges | None:
-    """Return the capillary pressure of bridges for all skins within ``ranges``, or None if they differ in too much.
+) -> TabulatedBridges | str:
+    """Return the capillary pressure of bridges for all skins within ``ranges``, or why not; empty if no bridges form.
 
     Parameters
     ----------
@@ -95,16 +102,16 @@ def bridges_over(
         known["young_modulus_layer"] = (min(moduli), max(moduli))
     shape = {name: known[name][0] for name in _SHAPE if name in known}
     if any(known[name][1] > value for name, value in shape.items()):
-        return None
+        return NO_TABLE
     low, high = known["relative_humidity"]
     known["relative_humidity"] = (min(low, _DRIEST), max(high, _WET))
-    found = corners(known, (*AIR_INPUTS, *CONTACT_INPUTS))
+    found = corners(known, (*AIR_INPUTS, *CONTACT_INPUTS), multiples_of(ranges))
     if found is None:
-        return None
+        return NO_TABLE
     inputs = at_skin(found)
     inputs["relative_humidity"] = np.minimum(inputs["relative_humidity"], _WETTEST)
     if not bridges_form(inputs).any():
-        return None
+        return ""
     gap, strength = kelvin_gap_and_strength(inputs)
     spectrum, skin = spectrum_of(inputs, tables), one_layer_skin_of(inputs)
     height = np.broadcast_to(rms_height(spectrum), gap.shape)
@@ -124,7 +131,7 @@ def bridges_over(
             progress=progress,
         ),
     )
-    return None if table is None else TabulatedBridges(table, shape)
+    return NO_TABLE if table is None else TabulatedBridges(table, shape)
 
 
 def prepared_humid_air(
@@ -132,8 +139,8 @@ def prepared_humid_air(
 ) -> ForwardModel:
     """Return a model of skin in humid air whose functions take a ``table`` with the table for ``ranges``, if there is one."""
     table = bridges_over(ranges, model.defaults(ranges), tables, progress)
-    if table is None:
-        return model
+    if isinstance(table, str):
+        return replace(model, accuracy=table)
     return replace(
         model,
         evaluate=partial(cast(partial[dict[str, FloatArray]], model.evaluate), table=table),

@@ -30,7 +30,7 @@ from skinbayes.lubrication.film_table import (
     HYSTERESIS,
     MINIMUM,
     PRESSURE_FLOW,
-    REFERENCE,
+    REFERENCE_WITH_MEMORY,
     SLOWEST,
     FilmTable,
 )
@@ -46,8 +46,6 @@ _POWER = {
     HYSTERESIS: 0.0,
 }
 """Powers of λ that the outputs become at low speed: films stay, ∫θ dX/H too, the fluid pressure is in proportion to λ."""
-
-_REFERENCE = REFERENCE | {HYSTERESIS: 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +118,7 @@ class ContractedFilms:
         start = self.start + cell
         weights, slopes = cubic_weights(place), cubic_slopes(place) if slope else ()
         ends = _Ends(self, position, log_number)
-        references = [_REFERENCE[output] for output in outputs if output in _REFERENCE]
+        references = [REFERENCE_WITH_MEMORY[output] for output in outputs if output in REFERENCE_WITH_MEMORY]
         smooth = iter(self._smooth(ends.held_number, references, slope))
         found: list[FloatArray] = []
         for output in outputs:
@@ -131,7 +129,7 @@ class ContractedFilms:
                 rate *= per_unit / self.unit
             else:
                 value = gather(self.flat, start, offset, weights)
-            if output in _REFERENCE:
+            if output in REFERENCE_WITH_MEMORY:
                 value += next(smooth)
                 if rate is not None:
                     rate += next(smooth)
@@ -178,7 +176,7 @@ class _Ends:
             value[self.slow] += power * self.below + bend * (growth - 1)
             if rate is not None:
                 rate[self.slow] = power + bend * growth
-        if self.fast[0].size and output not in _REFERENCE:
+        if self.fast[0].size and output not in REFERENCE_WITH_MEMORY:
             value[self.fast] += self._rate(output, self.fast, self.films.speeds - 1) * self.above
         return [value] if rate is None else [value, rate]
 
@@ -190,11 +188,11 @@ class _Ends:
         )
         unit = np.broadcast_to(films.unit, self.shape)[where]
         rate = (films.flat.take(start + 2) - films.flat.take(start)) / 2 * self.per_unit / unit
-        if output in _REFERENCE:
+        if output in REFERENCE_WITH_MEMORY:
             at = np.broadcast_to(
                 films.anchor + films.unit * (SLOWEST if point == 0 else films.fastest), self.shape
             )
-            reference = _REFERENCE[output]
+            reference = REFERENCE_WITH_MEMORY[output]
             end = None if films.end is None else np.broadcast_to(films.end, self.shape)[where]
             wanted = range(reference, reference + 1)
             smooth = films.smooth.mapped(lambda array: np.broadcast_to(array, self.shape)[where])

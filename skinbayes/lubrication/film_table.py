@@ -26,6 +26,9 @@ HYSTERESIS = 6
 REFERENCE = {CENTRAL: 0, COUETTE: 1, PRESSURE_FLOW: 2, MINIMUM: 3}
 """Outputs that are relative to those of the smooth ball, and their places among those."""
 
+REFERENCE_WITH_MEMORY = REFERENCE | {HYSTERESIS: 4}
+"""The same where the tissue remembers."""
+
 ANCHORS = 2
 """Numbers before the outputs of a material: ln λ that speeds are counted from, and the unit of ln λ."""
 

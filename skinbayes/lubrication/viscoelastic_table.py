@@ -27,7 +27,7 @@ from skinbayes.lubrication.film_table import (
     FASTEST,
     HYSTERESIS,
     PRESSURE_FLOW,
-    REFERENCE,
+    REFERENCE_WITH_MEMORY,
     SLOWEST,
     FilmTable,
 )
@@ -51,7 +51,6 @@ _EVERY = 2  # of the speeds of the table at which the correction is solved
 _BEYOND = 8  # speeds, beyond those of the table, at which the shifted ones may lie
 _SPARSER = 1 / 3  # nodes at which the correction is solved, over those of the table
 _CHECK_NODES = 128
-_REFERENCE = REFERENCE | {HYSTERESIS: 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +160,7 @@ def build_memory_correction(
         reference = CubicSpline(LOG_NUMBERS, added, axis=-1)(np.maximum(numbers, LOG_NUMBERS[0]))
         elastic = elastic[:, :HYSTERESIS]
         found[:, :, :HYSTERESIS] -= elastic[..., ::_EVERY]
-        for output, place in _REFERENCE.items():
+        for output, place in REFERENCE_WITH_MEMORY.items():
             found[:, :, output] -= reference[:, place]
         found = CubicSpline(few, found, axis=-1)(fine)
         films = smooth_films()
@@ -200,7 +199,7 @@ def _similar(found: FloatArray, elastic: FloatArray, fine: FloatArray, grid: Flo
         residual[row] = CubicSpline(fine, found[row], axis=-1)(np.minimum(shift + stretch * grid, fine[-1]))
     residual[:, :HYSTERESIS] -= elastic[..., : grid.size]
     splines = spline_coefficients(residual)
-    splines[:, [*_REFERENCE], -3:] = 0.0  # as those of the table
+    splines[:, [*REFERENCE_WITH_MEMORY], -3:] = 0.0  # as those of the table
     return np.concatenate([similar - [0.0, 1.0], splines.reshape(len(found), -1)], axis=1)
 
 

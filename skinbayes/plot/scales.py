@@ -45,7 +45,7 @@ class Scale:
         return f"{symbol} [{self.unit}]" if self.unit else symbol
 
 
-def scale_for(unit: str, *groups: FloatArray, typical: float | None = None) -> Scale:
+def scale_for(unit: str, *groups: FloatArray) -> Scale:
     """Choose unit and kind of axis for the central 98 % of each of the groups of values (SI)."""
     finite = [np.asarray(g)[np.isfinite(g)] for g in groups]
     finite = [g for g in finite if g.size]
@@ -53,7 +53,7 @@ def scale_for(unit: str, *groups: FloatArray, typical: float | None = None) -> S
         return Scale(1.0, "" if unit == "1" else unit, False)
     low = min(float(np.quantile(g, 0.01)) for g in finite)
     high = max(float(np.quantile(g, 0.99)) for g in finite)
-    factor, name = prefix_of(typical if typical is not None else float(np.median(finite[-1])), unit)
+    factor, name = prefix_of(float(np.median(finite[-1])), unit)
     positive = min(float(g.min()) for g in finite) > 0.0
     return Scale(factor, name, bool(positive and low > 0.0 and high / low > WIDE))
 

@@ -23,6 +23,7 @@ from skinbayes.problem.observations import Observation
 from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.shared_scatter import SharedScatter
+from skinbayes.problem.tied import whole_ties
 from skinbayes.statistics.correlated_scatter import CorrelatedScatter
 from skinbayes.statistics.groups import CrossedGroups
 
@@ -164,7 +165,8 @@ class BoundModel(Posterior):
         prepared = self.forward
         if prepared.prepare is not None and self.observations and self.free:
             with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
-                ranges = input_ranges([p.prior for p in self.free if p.prior], self.inputs)
+                priors = [p.prior for p in self.free if p.prior]
+                ranges = input_ranges(priors, self.inputs, multiples=whole_ties(self.tied))
                 prepared = prepared.prepare(prepared, ranges, self.tables, progress, cores)
         self.__dict__["model"] = prepared
         return prepared

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset
@@ -153,13 +152,12 @@ def experiment_of(spec: JointSpec, name: str, forward: ForwardModel | None = Non
     """One experiment as a model of its own, with the parameters and the surface that it takes."""
     one = spec.experiments[name]
     forward = forward or forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
-    surface: tuple[Any, ...] = (spec.surface_name, spec.surface_file, spec.surface_stated)
+    one = replace(one, parameters=_of_experiment(spec, forward, name))
     if not forward.uses_surface:
-        surface = (None, None, None)
+        return replace(one, surface_name=None, surface_file=None, surface_stated=None)
     return replace(
         one,
-        parameters=_of_experiment(spec, forward, name),
-        surface_name=surface[0],
-        surface_file=surface[1],
-        surface_stated=surface[2],
+        surface_name=spec.surface_name,
+        surface_file=spec.surface_file,
+        surface_stated=spec.surface_stated,
     )

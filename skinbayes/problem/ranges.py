@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.forward.base import Ranges
+from skinbayes.forward.base import Multiples, TiedRanges
 from skinbayes.statistics.priors import Prior
 
 DRAWS = 2000
@@ -18,8 +18,11 @@ BEYOND = 1e-5
 
 
 def input_ranges(
-    priors: Sequence[Prior], inputs: Callable[[FloatArray], Mapping[str, FloatArray]], seed: int = 4
-) -> Ranges:
+    priors: Sequence[Prior],
+    inputs: Callable[[FloatArray], Mapping[str, FloatArray]],
+    seed: int = 4,
+    multiples: Multiples | None = None,
+) -> TiedRanges:
     """Smallest and largest value of each input over the rows and nearly all of the prior; inputs that are not finite left out.
 
     Parameters
@@ -27,6 +30,7 @@ def input_ranges(
     priors : of each of the D parameters
     inputs : inputs of the forward model by name for parameter vectors ``(B, D)``
     seed : seed of the prior draws
+    multiples : inputs that may be multiples of others; those are kept that are it wherever is looked
 
     Notes
     -----
@@ -44,8 +48,16 @@ def input_ranges(
         ],
         axis=-1,
     )
-    found = {}
-    for name, values in inputs(draws).items():
-        if np.isfinite(values).all():
-            found[name] = (float(values.min()), float(values.max()))
-    return found
+    given = inputs(draws)
+    found = {
+        name: (float(values.min()), float(values.max()))
+        for name, values in given.items()
+        if np.isfinite(values).all()
+    }
+    # an exponent of a covariate may act on one of two
+    together = {
+        name: (of, times)
+        for name, (of, times) in (multiples or {}).items()
+        if {name, of} <= set(found) and np.allclose(given[name], times * given[of], rtol=1e-12, atol=0)
+    }
+    return TiedRanges(found, together)

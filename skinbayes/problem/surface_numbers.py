@@ -38,11 +38,17 @@ def surface_numbers(problem: BoundModel, theta: FloatArray) -> dict[str, float]:
 
 def surface_sentence(problem: BoundModel, theta: FloatArray, where: str) -> list[str]:
     """The same in a sentence; ``where`` says at which parameters. None where no surface enters."""
+    words = surface_words(problem, theta)
+    return [f"Surface{where}: {words}."] if words else []
+
+
+def surface_words(problem: BoundModel, theta: FloatArray) -> str:
+    """The same in words; empty where no surface enters."""
     found = surface_numbers(problem, theta)
     if not found:
-        return []
+        return ""
     low, high = (format_quantity(found[f"wavevector_{end}"], "1/m", 3) for end in ("min", "max"))
-    return [
-        f"Surface{where}: rms height {format_quantity(found['rms_height'], 'm', 3)}, rms slope {found['rms_slope']:.3g}, true "
-        f"area {found['total_area_ratio']:.3g} times the nominal one, wavevectors from {low} to {high}."
-    ]
+    return (
+        f"rms height {format_quantity(found['rms_height'], 'm', 3)}, rms slope {found['rms_slope']:.3g}, true "
+        f"area {found['total_area_ratio']:.3g} times the nominal one, wavevectors from {low} to {high}"
+    )

@@ -62,6 +62,14 @@ def resolve_ties(
     return [tied for spec in parameters for tied in resolved(spec)]
 
 
+def whole_ties(tied: Collection[ParameterSpec]) -> dict[str, tuple[str, float]]:
+    """Inputs that are one multiple of one other input, whatever their levels, to that one and the multiple."""
+    found: dict[str, set[tuple[str, float]]] = {}
+    for spec in tied:
+        found.setdefault(spec.name, set()).add((str(spec.same_as).partition("[")[0], spec.times))
+    return {name: next(iter(ties)) for name, ties in found.items() if len(ties) == 1}
+
+
 def _tied(
     spec: ParameterSpec, other: ParameterSpec, root: ParameterSpec, place: str, inherits: bool
 ) -> ParameterSpec:

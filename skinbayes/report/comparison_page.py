@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.comparison.tables import EXPLAINED, comparison_tables
+from skinbayes.comparison.verdicts import AHEAD
 from skinbayes.fit.joint_fit import JointFit
 from skinbayes.phrases import and_list
 from skinbayes.plot.comparison import plot_comparison
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 SHOWN = ("data", "predictive", "discrepancy", "residuals")
 """Keys of the figures that show a model beside its data; the second only without the first."""
 
-AHEAD = Drawing(
+BEHIND = Drawing(
     "ahead", plot_comparison, "How far each model is behind the best one",
     "A panel for each measure, with a dot for each model at its difference to the best.",
     "Differences of ln densities; 0 is the best model of a panel, and a model at −1 gives what happened a probability e times "
@@ -64,28 +65,21 @@ def _context(comparison: Comparison, fits: Sequence[Fit | JointFit]) -> dict[str
     data = [
         data_origin(one) for one in (first.experiments.values() if isinstance(first, JointFit) else [first])
     ]
-    said = comparison.sentences()
+    said = comparison.statements()
     return {
         "title": f"{and_list([fit.name for fit in ordered]) if len(ordered) < 4 else f'{len(ordered)} models'} compared",
         "converged": comparison.converged,
         "unfinished": [model.name for model in comparison.models if not model.converged],
         "question": f"Which of {len(ordered)} models do these {comparison.rows} data prefer?",
-        "answers": [sentence for sentence in said if _decides(sentence)],
-        "cautions": [sentence for sentence in said if not _decides(sentence)],
+        "answers": [one.text for one in said if one.kind == AHEAD],
+        "cautions": [one.text for one in said if one.kind != AHEAD],
         "tables": comparison_tables(comparison),
         "explained": EXPLAINED,
-        "ahead": picture(comparison, AHEAD),
+        "ahead": picture(comparison, BEHIND),
         "models": [_model(fit) for fit in ordered],
         "data": data,
         "references": list(dict.fromkeys(reference for fit in ordered for reference in fit.cite())),
     }
-
-
-def _decides(sentence: str) -> bool:
-    """Whether a sentence says which model is ahead, and not how to read that."""
-    return any(
-        word in sentence for word in ("better than", "apart", "Evidence: ", "predicted best by", "prefer")
-    )
 
 
 def _model(fit: Fit | JointFit) -> dict[str, Any]:

@@ -12,23 +12,15 @@ if TYPE_CHECKING:
 
 def data_origin(fit: Fit) -> dict[str, Any]:
     """Where the data come from; what a file without provenance does not say is empty."""
+    from skinbayes.files.provenance import TEXTS
+
     known = fit.provenance["data"]
     origin = known.get("origin", {})
-    texts = (
-        "title",
-        "licence",
-        "attribution",
-        "where",
-        "how_read",
-        "digitised_by",
-        "transformation",
-        "spread",
-    )
     return {
         "key": opening.data_name(fit),
         "rows": str(known.get("rows", fit.groups["observed_data"].sizes["row"])),
         "sha256": str(known.get("sha256", "")),
-        **{name: str(origin.get(name) or "") for name in texts},
+        **{name: str(origin.get(name) or "") for name in ("title", *TEXTS)},
         "doi": [str(doi) for doi in origin.get("doi", [])],
         "authors": ", ".join(origin.get("authors", [])),
         "caveats": list(origin.get("caveats", [])),

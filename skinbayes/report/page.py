@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from skinbayes.comparison.verdicts import DOUBT, LOSES
 from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.predicted import observed_values
 from skinbayes.problem.surface_numbers import surface_sentence
@@ -131,13 +132,12 @@ def _baselines(baseline_models: AgainstBaselines | None) -> dict[str, Any]:
     """Sentences and table of the baseline models; what makes the numbers themselves doubtful stands apart."""
     if baseline_models is None:
         return {"loses": [], "baseline_models": None}
-    said = baseline_models.sentences()
-    doubts = [sentence for sentence in said if "importance sampling" in sentence]
+    said = baseline_models.statements()
     return {
-        "loses": [sentence for sentence in said if " LOSES to " in sentence],
+        "loses": [one.text for one in said if one.kind == LOSES],
         "baseline_models": {
-            "sentences": [sentence for sentence in said if sentence not in doubts],
-            "doubts": doubts,
+            "sentences": [one.text for one in said if one.kind != DOUBT],
+            "doubts": [one.text for one in said if one.kind == DOUBT],
             "headers": baseline_models.headers(),
             "rows": baseline_models.rows(),
         },

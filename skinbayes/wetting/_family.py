@@ -56,7 +56,7 @@ class GapFamily(NamedTuple):
         return _centres(value, change, width // 3, limit, narrow)
 
     def fill(self, log_pressure: FloatArray, gap: FloatArray) -> Filled:
-        """What lies below ``gap`` (m) at ln p, both of shape ``(B, F)``; slopes are left 0."""
+        """What lies below ``gap`` (m) at ln p, both of shape ``(B, F)``."""
         mixture, _ = self.at(log_pressure)
         return Filled(*(x.reshape(gap.shape) for x in fill(mixture, gap.reshape(-1))))
 

@@ -30,22 +30,18 @@ class Mixture(NamedTuple):
 
 
 class Filled(NamedTuple):
-    """What lies below a gap d, and its derivatives along ln d and along a parameter x of the mixture.
+    """What lies below a gap d, and its derivative along ln d.
 
     Attributes
     ----------
     area : F, fraction of the nominal area whose gap is in 0 … d, real contact not counted, dimensionless
     film : ∫_0^d u P du, m
     density : dF/dln d, dimensionless; dfilm/dln d is d times it
-    area_slope : dF/dx, dimensionless
-    film_slope : dfilm/dx, m
     """
 
     area: FloatArray
     film: FloatArray
     density: FloatArray
-    area_slope: FloatArray
-    film_slope: FloatArray
 
 
 def folded_mean(centre: FloatArray, width: FloatArray) -> FloatArray:
@@ -74,31 +70,28 @@ def cover(mixture: Mixture, gap: FloatArray, slope: Mixture) -> tuple[FloatArray
     return area.sum(axis=-1), rise.sum(axis=-1)
 
 
-def fill(mixture: Mixture, gap: FloatArray, slope: Mixture | None = None) -> Filled:
+def fill(mixture: Mixture, gap: FloatArray) -> Filled:
     """Fill all that lies below ``gap`` with water.
 
     Parameters
     ----------
     mixture : components of shape ``(M, n)``
     gap : d, m, ≥ 0, shape ``(M,)``; inf is allowed
-    slope : dmixture/dx, same shapes; None for zero
 
     Returns
     -------
     filled : `Filled`, each of shape ``(M,)``
     """
     count, n = gap.size, mixture.fraction.shape[-1]
-    found = np.zeros((5, count))
+    found = np.zeros((3, count))
     step = max(1, BLOCK // n)
     for first in range(0, count, step):
         block = slice(first, first + step)
-        part = Mixture(*(x[block] for x in mixture))
-        change = None if slope is None else Mixture(*(x[block] for x in slope))
-        _fill_block(part, gap[block], change, found[:, block])
+        _fill_block(Mixture(*(x[block] for x in mixture)), gap[block], found[:, block])
     return Filled(*found)
 
 
-def _fill_block(mixture: Mixture, gap: FloatArray, slope: Mixture | None, found: FloatArray) -> None:
+def _fill_block(mixture: Mixture, gap: FloatArray, found: FloatArray) -> None:
     fraction, centre, width = mixture
     inverse = 1 / width
     z = centre * inverse
@@ -115,14 +108,3 @@ def _fill_block(mixture: Mixture, gap: FloatArray, slope: Mixture | None, found:
     found[0] = (fraction * area).sum(axis=-1)
     found[1] = (fraction * film).sum(axis=-1)
     found[2] = (fraction * (both * s)).sum(axis=-1)
-    if slope is None:
-        return
-    shift, spread = slope.centre, slope.width
-    away = pb - pa
-    a *= pa
-    b *= pb
-    found[3] = (fraction * (away * shift - (a + b) * spread) * inverse + slope.fraction * area).sum(axis=-1)
-    widening = 2 * pz - both - (a + b) * s
-    found[4] = (fraction * ((centred + s * away) * shift + widening * spread) + slope.fraction * film).sum(
-        axis=-1
-    )

@@ -11,6 +11,7 @@ from command_line import run
 from test_report_page import Page, words
 
 from skinbayes.comparison import against_baselines
+from skinbayes.comparison.verdicts import DOUBT, LOSES, Statement
 from skinbayes.fit import load_fit, sample
 from skinbayes.problem import load_problem
 from skinbayes.report import write_report
@@ -102,10 +103,10 @@ def test_page_shows_groups_and_escapes_their_names(grouped: Path, tmp_path: Path
 
 def test_a_fit_that_loses_says_so_at_the_top(grouped: Path, tmp_path: Path) -> None:
     losing = SimpleNamespace(
-        sentences=lambda: [
-            "'law' LOSES to 'null' in predicting a left-out liquid, by 7.1 ± 2.3.",
-            "'law' equals 'null' in predicting a left-out datum.",
-            "'law': 1 of 4 liquids cannot be estimated by importance sampling.",
+        statements=lambda: [
+            Statement("'law' LOSES to 'null' in predicting a left-out liquid, by 7.1 ± 2.3.", LOSES),
+            Statement("'law' equals 'null' in predicting a left-out datum."),
+            Statement("'law': 1 of 4 liquids cannot be estimated by importance sampling.", DOUBT),
         ],
         headers=lambda: ["model", "one liquid left out"],
         rows=lambda: [["law", "-9.1 ± 3.0"], ["<null>", "-2.0 ± 3.0"], ["noise floor", ""]],

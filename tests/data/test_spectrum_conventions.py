@@ -55,6 +55,17 @@ def test_the_surface_is_the_same_in_all_of_them(name: str, tmp_path: Path) -> No
     assert float(rms_slope(found)) == pytest.approx(float(rms_slope(SURFACE)), rel=0.05)
 
 
+@pytest.mark.parametrize("above", ["\n", "sep=,\n\n"])
+def test_comments_may_have_empty_lines_and_the_separator_above_them(above: str, tmp_path: Path) -> None:
+    path = written(tmp_path, "contact.engineering", "convention: contact.engineering")
+    plain = read_spectrum(path)
+    path.write_text(above + path.read_text())
+    assert np.array_equal(read_spectrum(path).node_power, plain.node_power)
+    path.write_text(path.read_text().replace("convention: contact", "convention: mine"))
+    with pytest.raises(InputError, match=f"line {1 + above.count(chr(10))}: convention"):
+        read_spectrum(path)
+
+
 def test_a_convention_must_be_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="does not say in which convention") as caught:
         read_spectrum(written(tmp_path, "contact.engineering"))

@@ -11,6 +11,7 @@ import pytest
 
 from skinbayes.errors import InputError
 from skinbayes.forward import ForwardModel, Tables, emulated
+from skinbayes.forward.base import TiedRanges
 from skinbayes.forward.emulated_model import Emulated
 
 RANGES = {
@@ -62,6 +63,22 @@ def test_an_emulator_is_as_exact_as_asked_and_evaluates_no_more():
     # friction crosses zero: relative to its largest value of 1.2; twice the tolerance is room beyond the places it was held to
     assert np.abs(found["friction_coefficient"] - exact["friction_coefficient"]).max() < 2e-4 * 1.2
     assert np.abs(found["relative_contact_area"] / exact["relative_contact_area"] - 1).max() < 2e-4
+
+
+def test_inputs_that_are_multiples_are_one_axis():
+    low, high = RANGES["temperature"]
+    ranges = TiedRanges(
+        {**RANGES, "wetting_time": (low / 10, high / 10)}, {"wetting_time": ("temperature", 0.1)}
+    )
+    fast, inputs = prepared(ranges=ranges), inputs_of(200)
+    assert "wetting_time" not in fast.evaluate.__self__.found.counts
+    for factor, beyond in ((0.1, False), (0.1001, True)):
+        inputs["wetting_time"] = factor * inputs["temperature"]
+        EVALUATED.clear()
+        found = fast.evaluate(inputs, Tables())
+        assert bool(EVALUATED) == beyond
+        for name, exact in fading(inputs, Tables()).items():
+            assert found[name] == pytest.approx(exact, abs=1e-4 * np.abs(exact).max())
 
 
 def test_vectors_one_by_one_and_after_a_journey_are_the_same_to_the_last_bit():

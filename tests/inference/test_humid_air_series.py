@@ -159,7 +159,8 @@ def test_what_the_table_does_not_reach_is_solved(tmp_path: Path) -> None:
 def test_what_a_table_is_built_for(tmp_path: Path, free: dict[str, str], tabulated: bool) -> None:
     rows = {"relative_humidity [1]": np.array([0.3, 0.85])}
     problem = model(tmp_path, free, rows)
-    assert bool(problem.model.accuracy) == tabulated
+    assert ("interpolated" in problem.model.accuracy) == tabulated
+    assert ("same_as" in problem.model.accuracy) != tabulated
     theta = about_truth(problem, 3, 0.01)
     solved = problem.forward.evaluate(problem.inputs(theta), problem.tables)["friction_coefficient"]
     np.testing.assert_allclose(problem.predict(theta)["friction_coefficient"], solved, rtol=4e-3)

@@ -353,6 +353,6 @@ def test_words_on_levels_fitted_anew() -> None:
         return LeftOutLevel(name, 3, -1.0, 0.1, 1.2, refitted, reliable)
 
     levels = (level("a", True, True), level("b", False, True), level("c", True, False))
-    said = unreliable_levels("mine", LeftOut("liquid", levels, -3.0, 0.0))
+    said = [one.text for one in unreliable_levels("mine", LeftOut("liquid", levels, -3.0, 0.0))]
     assert "sampled anew without a, 1 of 3 liquids" in said[0]
     assert "1 of 3 liquids (c)" in said[1] and "even refits" in said[1]

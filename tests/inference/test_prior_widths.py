@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 from skinbayes.comparison.models import compare
 from skinbayes.comparison.prior_widths import ALL, prior_widths
+from skinbayes.comparison.verdicts import AHEAD
 
 FIRST, SECOND = NAMES
 WITH = Known((0.2, 0.0), (0.5, 0.3), 0.2, "growing")
@@ -56,6 +57,15 @@ def test_it_is_said_in_words(fits):
     assert f"stays if {FIRST} may be 100 times larger or smaller." in said
     kept = compared.to_dict()["prior_widths"]["scans"]
     assert [entry["quantity"] for entry in kept] == [*NAMES, ALL]
+
+
+def test_what_a_sentence_does_hangs_on_no_word_in_it(fits):
+    named = replace(WITH, widths=(0.5, 1.2), name="preferred, apart, better than").fit()
+    statements = compare([fits[0], fits[1], named], refit=False).statements()
+    ahead = [one.text for one in statements if one.kind == AHEAD]
+    assert not any("WARNING" in text or "is not given" in text for text in ahead)
+    # whether the preference turns, and whether it stays, is one answer
+    assert any(" turns if " in text for text in ahead) and any(" stays if " in text for text in ahead)
 
 
 def test_models_that_differ_in_widths_only_are_warned_of(fits):

@@ -52,6 +52,49 @@ def test_a_tied_parameter_follows_and_is_not_free(tmp_path: Path) -> None:
     assert held.inputs(np.zeros((1, 0)))["young_modulus_bulk"] == [[3e6]]
 
 
+def drying(**parameters: Any) -> sb.Problem:
+    given = {
+        **LAYER, "young_modulus_layer": "7 MPa", "young_modulus_bulk": "20 kPa", "young_modulus_layer_dry": "1 GPa",
+        "yield_stress": "50 MPa", "nominal_pressure": "6.83 kPa", "surface_tension": "72 mN/m", "contact_angle_skin": "80 deg",
+        "contact_angle_counterface": "0 deg", "wetting_time": "30 s", "initial_film": "90 um", "evaporation_rate": "0.17 um/s",
+    }  # fmt: skip
+    given.pop("sphere_radius")
+    return sb.build_problem(
+        "drying",
+        {"time [s]": [0.0, 300.0, 420.0, 500.0, 540.0], "friction_coefficient": [1.0] * 5},
+        parameters=given | parameters,
+        surface="paper_reference",
+        noise={"family": "lognormal", "noise_scale": 0.2},
+    )
+
+
+def test_a_table_holds_no_more_than_a_tie_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Moduli that go together are one axis of a table of bridged skin; a box of both has skins without bridges to solve."""
+    monkeypatch.setenv("SKINBAYES_CACHE", "")
+    soft = {"lognormal": ["20 kPa", 0.2]}
+    tied = drying(
+        young_modulus_bulk=soft, young_modulus_layer={"same_as": "young_modulus_bulk", "times": 350}
+    )
+    assert "interpolated" in tied.model.accuracy
+    theta = tied.draw_prior(np.random.default_rng(5), 6)
+    with np.errstate(all="ignore"):
+        solved = tied.forward.evaluate(tied.inputs(theta), tied.tables)["friction_coefficient"]
+    assert tied.predict(theta)["friction_coefficient"] == pytest.approx(solved, rel=4e-3)
+    assert np.ptp(np.log(solved[:, 2])) > 0.1
+    apart = drying(young_modulus_bulk=soft, young_modulus_layer={"lognormal": ["7 MPa", 0.2]})
+    assert apart.model.evaluate is apart.forward.evaluate and "(same_as)" in apart.model.accuracy
+
+
+def test_a_layer_that_hardens_leaves_its_tie(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = []
+    monkeypatch.setattr("skinbayes.forward.drying_table.corners", lambda *given: seen.append(given[2]))
+    tie = {"same_as": "young_modulus_bulk", "times": 350}
+    parameters = {"young_modulus_bulk": {"lognormal": ["20 kPa", 0.2]}, "young_modulus_layer": tie}
+    for more in ({}, {"hardening_film": "1 um"}):
+        drying(**parameters, **more).prepare()
+    assert seen == [{"young_modulus_layer": ("young_modulus_bulk", 350.0)}, {}]
+
+
 def test_ties_to_levels(tmp_path: Path) -> None:
     levels = {"by": "state", "dry": SOFT, "wet": {"same_as": "young_modulus_layer[dry]", "times": 0.1}}
     for entry, expected in (
