@@ -122,7 +122,9 @@ def _run(
     )
     with warnings.catch_warnings():
         # on a narrow ridge dynesty says once that steps along it are many, and then doubles them
-        warnings.filterwarnings("ignore", "The slice sample interval was exp|Enabling doubling strategy", UserWarning)
+        warnings.filterwarnings(
+            "ignore", "The slice sample interval was exp|Enabling doubling strategy", UserWarning
+        )
         sampler.run_nested(dlogz=REST, print_progress=progress is not None, print_func=_told(progress, *task))
     return sampler.results
 
