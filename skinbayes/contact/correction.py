@@ -24,6 +24,7 @@ AREA_CORRECTION = 0.42
 """γ of the Yang–Persson correction, dimensionless: the one place where its usual value is stated."""
 
 _CACHED = 16  # tables of this many values of γ are kept
+_MANY = 500  # elements whose cells are looked up in a guide: a search by halves is quicker for few, and slow for many in no order
 
 # Knots in ln y. Below the first, A = 1 to 1e-12 and Φ(y) = y. In the middle Φ is integrated cell by cell.
 # Beyond, where A² = 4/(πy) to 2/(3y), Φ is elementary and the knots may thin out. Past the last one V_eff =
@@ -73,10 +74,41 @@ def _table(gamma: FloatArray) -> _Table:
     return _Table(log_phi, np.concatenate([cells, cells[..., -1:]], axis=-1))
 
 
+class _Guide(NamedTuple):
+    """Where to look for the cell of ln Φ: equal steps with at most one knot each, and the cell that each begins in.
+
+    Attributes
+    ----------
+    start, per_unit : left end of the first step; steps per unit of ln Φ
+    cell : of each step
+    upper : knot at the right end of each cell; infinite for the last
+    """
+
+    start: float
+    per_unit: float
+    cell: IndexArray
+    upper: FloatArray
+
+    @classmethod
+    def of(cls, log_phi: FloatArray) -> _Guide:
+        """The guide of increasing knots."""
+        step = float(np.diff(log_phi).min()) / 2
+        # half a step early, so that no rounding puts a value beyond the knot that it is held against
+        edges = log_phi[0] + step * (np.arange(int((log_phi[-1] - log_phi[0]) / step) + 2) - 0.5)
+        upper = np.append(log_phi[1:], np.inf)
+        return cls(float(log_phi[0]), 1.0 / step, log_phi[1:].searchsorted(edges, side="right"), upper)
+
+    def find(self, values: FloatArray) -> IndexArray:
+        """Number of knots but the first that are not above each value; any number for NaN."""
+        step = ((values - self.start) * self.per_unit).astype(np.intp)
+        cell = self.cell.take(step, mode="clip")
+        return np.asarray(cell + (self.upper.take(cell) <= values))
+
+
 @lru_cache(maxsize=_CACHED)
-def _single_table(gamma: float) -> tuple[FloatArray, FloatArray]:
+def _single_table(gamma: float) -> tuple[FloatArray, FloatArray, _Guide]:
     log_phi, cells = _table(np.array([gamma]))
-    return log_phi[0], np.ascontiguousarray(cells[:, 0])
+    return log_phi[0], np.ascontiguousarray(cells[:, 0]), _Guide.of(log_phi[0])
 
 
 def corrected_twice_stress_variance(
@@ -142,10 +174,12 @@ def _fraction_of_one(ratio: FloatArray, gamma: float) -> FloatArray:
         return np.full(ratio.shape, np.nan)
     if gamma == 1:
         return np.where(np.isnan(ratio), np.nan, 1.0)
-    log_phi, cells = _single_table(gamma)
+    log_phi, cells, guide = _single_table(gamma)
     # in full contact V_eff = V, under a vanishing load V_eff = γV: both are the ends of the table
     log_ratio = np.minimum(np.maximum(np.log(ratio), log_phi[0]), log_phi[-1])
-    return _interpolate(log_ratio, cells.take(log_phi[1:].searchsorted(log_ratio, side="right"), axis=1))
+    many = log_ratio.size > _MANY
+    cell = guide.find(log_ratio) if many else log_phi[1:].searchsorted(log_ratio, side="right")
+    return _interpolate(log_ratio, cells.take(cell, axis=1))
 
 
 def _fraction_of_many(ratio: FloatArray, distinct: FloatArray, member: IndexArray) -> FloatArray:

@@ -121,6 +121,13 @@ class PosteriorTarget:
     def starts(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Positions to start from: prior draws, thinned towards the posterior but as dispersed as the draws allow.
 
+        See :meth:`starts_counted`.
+        """
+        return self.starts_counted(rng, count)[0]
+
+    def starts_counted(self, rng: np.random.Generator, count: int) -> tuple[FloatArray, int]:
+        """Positions to start from, shape ``(count, D)``, and the likelihoods that were evaluated to find them.
+
         Of 20 prior draws for each start, ``count`` different ones are drawn with probability ∝ L^β; β ≤ 1 is as large as
         it can be while the effective number of candidates stays at or above ``count``. Where one candidate outweighs all the
         others together, the starts are led on by `anneal`, until β is a quarter.
@@ -154,15 +161,21 @@ class PosteriorTarget:
         beta = largest_power(weight, count)
         # Gumbel top-k: sampling without replacement with probability ∝ exp(β·weight)
         chosen = np.argsort(-(beta * weight + rng.gumbel(size=weight.shape)))[:count]
+        evaluated = len(theta) if self.use_likelihood else 0
         if effective_number(weight) > FOUND:
-            return position[chosen]
+            return position[chosen], evaluated
         only_prior = replace(self, use_likelihood=False).log_density
         final, sweeps = DISPERSION, SWEEPS
         if isinstance(self.transform, InnovationTransform):
             final, sweeps = DISPERSION_WITH_MEMORY, SWEEPS_WITH_MEMORY
-        return anneal(
-            position[chosen], weight[chosen], beta, final, only_prior, self.log_likelihood, rng, sweeps
-        )
+
+        def likelihood(moved: FloatArray) -> FloatArray:
+            nonlocal evaluated
+            evaluated += len(moved)
+            return self.log_likelihood(moved)
+
+        led = anneal(position[chosen], weight[chosen], beta, final, only_prior, likelihood, rng, sweeps)
+        return led, evaluated
 
 
 def _with_walls(support: tuple[float, float]) -> Transform:

@@ -21,11 +21,13 @@ class EnsembleState:
     positions : walkers, shape ``(walkers, D)``
     log_density : at those positions, shape ``(walkers,)``
     random_state : state of its own ``numpy.random.RandomState`` (Mersenne Twister)
+    spent : log-densities computed to come here that no steps count
     """
 
     positions: FloatArray
     log_density: FloatArray
     random_state: tuple[Any, ...]
+    spent: int = 0
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class EnsembleSteps:
     positions : shape ``(steps, walkers, D)``
     log_density : shape ``(steps, walkers)``
     random_state : generator state after the last step
-    evaluations : log-densities computed
+    evaluations : log-densities computed, those that were spent on the state they begin from included
     invalid : how many of them were NaN or +inf and were taken as −inf
     first_invalid : the first position of that kind, shape ``(D,)``; NaN if there was none
     """
@@ -113,7 +115,7 @@ def advance(target: Target, state: EnsembleState, steps: int, moves: MoveFactory
         positions,
         log_density,
         sampler.random_state,
-        density.evaluations,
+        state.spent + density.evaluations,
         density.invalid,
         density.first_invalid,
     )

@@ -169,7 +169,13 @@ def _attempt(
     crew: Callable[[Sequence[Any]], list[Any]],
 ) -> ImportanceDraws | None:
     discarded = last_gathering(rounds) * options.block_steps
-    return finish.attempt(len(rounds) * options.block_steps, partial(_joined, rounds), crew, discarded)
+    steps = len(rounds) * options.block_steps
+    return finish.attempt(steps, partial(_joined, rounds), crew, discarded, _spent(rounds))
+
+
+def _spent(rounds: list[list[EnsembleSteps]]) -> int:
+    """Evaluations for steps and the starts before them."""
+    return sum(block.evaluations for blocks in rounds for block in blocks)
 
 
 def _judged(target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]]) -> StoppingReport:
@@ -184,13 +190,12 @@ def _joined(rounds: list[list[EnsembleSteps]], name: str) -> FloatArray:
 def _chains(
     target: Target, options: SamplerOptions, rounds: list[list[EnsembleSteps]], report: StoppingReport
 ) -> Chains:
-    starts = options.ensembles * options.walkers_for(len(target.names))
     return Chains(
         names=target.names,
         positions=_joined(rounds, "positions"),
         log_density=_joined(rounds, "log_density"),
         report=report,
-        evaluations=starts + sum(block.evaluations for blocks in rounds for block in blocks),
+        evaluations=_spent(rounds),
         invalid=sum(block.invalid for blocks in rounds for block in blocks),
         first_invalid=next(
             (block.first_invalid for blocks in rounds for block in blocks if block.invalid),

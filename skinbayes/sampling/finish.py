@@ -31,8 +31,8 @@ FOUND = 1.3
 a little more than they will, weighted draws tell who is right."""
 
 DRAWS_FOR_EXPLORED, DRAWS_FOR_ESS = 1.5, 8.0
-"""Draws that are made at least for each position that was explored: they cost little more, and are worth far more. But no more
-than so many for each effective draw that was asked for."""
+"""Draws that are made at least for each evaluation that exploration took: they cost little more, and are worth far more. But no
+more than so many for each effective draw that was asked for."""
 
 
 class Finish:
@@ -60,6 +60,7 @@ class Finish:
         joined: Callable[[str], FloatArray],
         crew: Callable[[Sequence[Any]], list[Any]],
         discarded: int = 0,
+        spent: int = 0,
     ) -> ImportanceDraws | None:
         """Draws if they are due and accepted; what comes out depends on the seed, ``steps`` and the positions alone.
 
@@ -69,6 +70,7 @@ class Finish:
         joined : gives ``"positions"``, ``(ensembles, steps, walkers, D)``, and ``"log_density"``
         crew : evaluates positions
         discarded : steps at the beginning after which walkers were taken along; fewer than ``steps``
+        spent : evaluations of the run so far, without those of attempts
         """
         options = self._options
         due = options.importance and steps >= self._not_before and steps > 0
@@ -84,8 +86,7 @@ class Finish:
         if not agree and steps < IN_ANY_CASE:
             self.refused = f"the ensembles do not agree yet about {self._target.names[worst]}"
             return None
-        explored = ensembles * steps * walkers
-        least = int(min(DRAWS_FOR_EXPLORED * explored, DRAWS_FOR_ESS * options.ess))
+        least = int(min(DRAWS_FOR_EXPLORED * spent, DRAWS_FOR_ESS * options.ess))
         flat = log_density.reshape(ensembles, -1)
         if self._pending is not None:
             found = self._pending.go_on(chains, flat, options.ess, least)
@@ -110,7 +111,7 @@ class Finish:
         if found.pending is not None and steps < AFTER_REFUSAL * self._since:
             self._pending = found.pending
             return None
-        self._not_before = AFTER_REFUSAL * self._since if self._made > explored / 4 else 0
+        self._not_before = AFTER_REFUSAL * self._since if self._made > spent / 4 else 0
         self._given_up += self._made
         self._made, self._pending = 0, None
         return None

@@ -36,13 +36,21 @@ def initial_states(target: Target, options: SamplerOptions) -> list[EnsembleStat
     states = []
     for index, child in enumerate(np.random.SeedSequence(options.seed).spawn(options.ensembles)):
         for_starts, for_steps = child.spawn(2)
-        positions = np.array(target.starts(np.random.default_rng(for_starts), walkers), dtype=float)
+        found, spent = _found(target, np.random.default_rng(for_starts), walkers)
+        positions = np.array(found, dtype=float)
         log_density = Density(target)(positions)
         _check(target.names, index, positions, log_density, walkers)
         # emcee draws from a RandomState; a Generator would be ignored.
         generator = np.random.RandomState(np.random.MT19937(for_steps))
-        states.append(EnsembleState(positions, log_density, tuple(generator.get_state(legacy=True))))
+        random_state = tuple(generator.get_state(legacy=True))
+        states.append(EnsembleState(positions, log_density, random_state, spent + len(positions)))
     return states
+
+
+def _found(target: Target, rng: np.random.Generator, walkers: int) -> tuple[FloatArray, int]:
+    """Starts, and the evaluations that looking for them took as far as the target says."""
+    counted = getattr(target, "starts_counted", None)
+    return (target.starts(rng, walkers), 0) if counted is None else counted(rng, walkers)
 
 
 def _check(

@@ -12,7 +12,8 @@ from skinbayes.arrays import FloatArray
 class Target(Protocol):
     """A log-density on the whole real space, evaluated in batches, and the prior and likelihood it is made of.
 
-    Implementations are frozen and can be pickled (they travel to worker processes).
+    Implementations are frozen and can be pickled (they travel to worker processes). One that evaluates its likelihood to look for
+    starts may say so by a method ``starts_counted(rng, count)``: the same starts, and the number of evaluations.
     """
 
     @property

@@ -21,6 +21,9 @@ Evaluate = Callable[[FloatArray], FloatArray]
 POINTS = 2000
 """Explored positions of each ensemble that the mixture is fitted to."""
 
+FEWEST_POINTS = 200
+"""Effective number of draws from which the number of components is chosen anew."""
+
 WIDE_WEIGHT, WIDE_VOLUME, LEAST_STRETCH, MOST_STRETCH = 0.2, 250.0, 1.3, 2.5
 """A component about the whole, of so many times its volume, gets this part of all draws; it is wider by a factor between two. Of
 much more volume it would have hardly any draws where the weights become large."""
@@ -107,16 +110,21 @@ class Rounds:
         count = len(weights)
         # draws with weights far above the others would teach the mixture themselves only
         weights = np.minimum(weights, weights.sum() / np.sqrt(count))
-        if weights.sum() ** 2 / np.square(weights).sum() < POINTS / 4:
+        if weights.sum() ** 2 / np.square(weights).sum() < FEWEST_POINTS:
             return self.mixture.refitted(self.positions, weights)
-        # as many components as they can tell; a draw chosen twice is in one half only
+        # as many components as they can tell; a draw is in one half only
         part = rng.random(count) < 0.5
-        first, second = (self._chosen(weights * chosen, rng) for chosen in (part, ~part))
-        return fit_mixture(first, second, rng)
+        first, second = (self._chosen(np.flatnonzero(chosen), weights, rng) for chosen in (part, ~part))
+        return fit_mixture(first[0], second[0], rng, weights=(first[1], second[1]), known=self.mixture)
 
-    def _chosen(self, weights: FloatArray, rng: np.random.Generator) -> FloatArray:
-        size = min(POINTS, len(weights) // 2)
-        return np.asarray(self.positions[rng.choice(len(weights), size=size, p=weights / weights.sum())])
+    def _chosen(
+        self, rows: np.ndarray, weights: FloatArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, FloatArray]:
+        """Some of the draws with their weights, or as many as a fit can use in no time, chosen by their weights."""
+        if len(rows) <= POINTS:
+            return self.positions[rows], weights[rows]
+        chosen = rng.choice(rows, size=POINTS, p=weights[rows] / weights[rows].sum())
+        return self.positions[chosen], np.ones(POINTS)
 
 
 def _widened(mixture: StudentMixture) -> StudentMixture:

@@ -171,7 +171,12 @@ class StudentMixture:
 
 
 def fit_mixture(
-    x: FloatArray, held_out: FloatArray, rng: np.random.Generator, most: int = 16
+    x: FloatArray,
+    held_out: FloatArray,
+    rng: np.random.Generator,
+    most: int = 16,
+    weights: tuple[FloatArray, FloatArray] | None = None,
+    known: StudentMixture | None = None,
 ) -> StudentMixture:
     """Fit mixtures of 1, 2, 4, … components to points, and take the one under which other points are likeliest.
 
@@ -180,38 +185,48 @@ def fit_mixture(
     x, held_out : points of the distribution, shapes ``(n, D)`` and ``(m, D)``; neither needs to be independent
     rng : where the components begin
     most : components at most
+    weights : of both, shapes ``(n,)`` and ``(m,)``; equal if omitted
+    known : a mixture that may be near; one that goes on from it is tried too
 
     Returns
     -------
     StudentMixture
         Fitted to all points, with the number of components that ``held_out`` prefers.
     """
+    own, others = weights or (np.ones(len(x)), np.ones(len(held_out)))
+    points = own.sum() ** 2 / np.square(own).sum()
+    share = others / others.sum()
     chosen, best = None, -np.inf
     count = 1
-    while count <= most and count * (x.shape[1] + 2) <= len(x):
-        fitted = _begun(x, count, rng).refitted(x, np.ones(len(x)))
-        found = float(fitted.log_density(held_out).mean())
+    while count <= most and count * (x.shape[1] + 2) <= points:
+        fitted = _begun(x, count, rng, own).refitted(x, own)
+        found = float(share @ fitted.log_density(held_out))
         if found <= best + 1e-3:
             break
         chosen, best, count = fitted, found, 2 * count
+    if known is not None:
+        fitted = known.refitted(x, own)
+        if float(share @ fitted.log_density(held_out)) > best:
+            chosen = fitted
     if chosen is None:
-        chosen = _begun(x, 1, rng)
-    everything = np.concatenate([x, held_out])
-    return chosen.refitted(everything, np.ones(len(everything)))
+        chosen = _begun(x, 1, rng, own)
+    return chosen.refitted(np.concatenate([x, held_out]), np.concatenate([own, others]))
 
 
-def _begun(x: FloatArray, count: int, rng: np.random.Generator) -> StudentMixture:
+def _begun(x: FloatArray, count: int, rng: np.random.Generator, weights: FloatArray) -> StudentMixture:
     """Components at points far from each other (k-means++), each as wide as the whole over their number."""
     dimension = x.shape[1]
-    covariance = np.atleast_2d(np.cov(x.T))
+    mean = weights @ x / weights.sum()
+    covariance = np.atleast_2d(np.cov(x.T, aweights=weights))
     covariance[np.diag_indices_from(covariance)] *= 1 + _RIDGE
     whole = np.linalg.cholesky(covariance)
-    white = (x - x.mean(axis=0)) @ np.linalg.inv(whole).T
-    places = [int(rng.integers(len(x)))]
+    white = (x - mean) @ np.linalg.inv(whole).T
+    places = [int(rng.choice(len(x), p=weights / weights.sum()))]
     nearest = np.full(len(x), np.inf)
     while len(places) < count:
         nearest = np.minimum(nearest, np.square(white - white[places[-1]]).sum(axis=1))
-        places.append(int(rng.choice(len(x), p=nearest / nearest.sum())))
-    means = x[places] if count > 1 else x.mean(axis=0, keepdims=True)
+        far = weights * nearest
+        places.append(int(rng.choice(len(x), p=far / far.sum())))
+    means = x[places] if count > 1 else mean[np.newaxis]
     factors = np.repeat(whole[np.newaxis] / count ** (1 / dimension), count, axis=0)
     return StudentMixture(np.full(count, 1 / count), means, factors, np.full(count, 6.0))

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_models import write_model
 
 from skinbayes.problem import load_problem
 from skinbayes.problem import target as target_module
+from skinbayes.problem.statistical_model import StatisticalModel
+from skinbayes.sampling.ensemble_engine import EnsembleEngine
+from skinbayes.sampling.options import SamplerOptions
 from skinbayes.statistics.annealing import anneal, effective_number, largest_power
 
 COUNT = 2000
@@ -108,3 +113,21 @@ def test_starts_are_led_on_where_prior_draws_do_not_find_the_posterior(tmp_path,
     assert (target.log_density(led) > best - 60).all()
     assert np.median(target.log_density(chosen)) < best - 200
     assert len(np.unique(led, axis=0)) == 64
+
+
+def test_what_starts_cost_is_counted_and_is_part_of_what_a_run_cost(tmp_path, monkeypatch):
+    """Each row that the likelihood is asked for: candidates, and the moves of the population that is led on."""
+    target = problem_of_many_data(tmp_path).target()
+    asked = []
+    likelihood = StatisticalModel.data_likelihood
+
+    def watched(problem):
+        density = likelihood(problem)
+        return replace(density, function=lambda theta: asked.append(len(theta)) or density.function(theta))
+
+    monkeypatch.setattr(StatisticalModel, "data_likelihood", watched)
+    _, counted = target.starts_counted(np.random.default_rng(1), 64)
+    assert counted == sum(asked) > 20 * 64
+    asked.clear()
+    draws = EnsembleEngine().run(target, SamplerOptions(seed=1, ess=500))
+    assert draws.diagnostics["evaluations"] == sum(asked)

@@ -138,6 +138,26 @@ def test_density_and_draws_of_a_mixture_belong_together():
     assert fitted.log_density(x[6000:]).mean() > mixture.log_density(x[6000:]).mean() - 0.02
 
 
+def test_a_mixture_fitted_to_weighted_points_is_that_of_what_they_weigh():
+    """Draws of a wide distribution with the weights of two narrow ones, which as points alone they do not show."""
+    rng = np.random.default_rng(5)
+    x = 4.0 * rng.normal(size=(8000, 2))
+
+    def two(points):
+        return np.logaddexp(*(np.log(0.5) + norm.logpdf(points - m).sum(axis=1) for m in (-4.0, 4.0)))
+
+    weights = np.exp(two(x) - norm.logpdf(x, scale=4.0).sum(axis=1))
+    fitted = fit_mixture(x[:4000], x[4000:], rng, weights=(weights[:4000], weights[4000:]))
+    assert fitted.weights.size >= 2
+    points = np.concatenate([rng.normal(size=(2000, 2)) + m for m in (-4.0, 4.0)])
+    lost = (two(points) - fitted.log_density(points)).mean()
+    assert -0.01 < lost < 0.05
+    # one that is known and better than what is found from anywhere stays
+    single = fit_mixture(x[:4000], x[4000:], rng, 1, (weights[:4000], weights[4000:]))
+    kept = fit_mixture(x[:4000], x[4000:], rng, 1, (weights[:4000], weights[4000:]), fitted)
+    assert single.weights.size == 1 and kept.weights.size == fitted.weights.size
+
+
 @pytest.mark.parametrize(("target", "log_evidence", "quantiles"), [
     (Known(normal, 2), 2.0, norm.ppf(LEVELS)),
     (Known(normal, 8), 2.0, norm.ppf(LEVELS)),

@@ -19,6 +19,7 @@ from skinbayes.contact import (
     relative_contact_area,
     twice_stress_variance,
 )
+from skinbayes.contact.correction import _single_table
 from skinbayes.friction import friction_coefficient
 from skinbayes.roughness import named_surface
 
@@ -98,6 +99,21 @@ def test_correction_solves_its_differential_equation():
         method="DOP853",
     )
     np.testing.assert_allclose(corrected_twice_stress_variance(p, solution.t), solution.y[0], rtol=3e-7)
+
+
+@pytest.mark.parametrize("gamma", [1e-9, 0.05, AREA_CORRECTION, 0.999])
+def test_many_values_are_those_of_few_to_the_last_bit(gamma):
+    """Many look their cells up in a guide, few search for them; also on knots and beside them, beyond both ends, and NaN."""
+    knots = np.exp(_single_table(gamma)[0])
+    beside = np.concatenate([np.nextafter(knots, 0.0), knots, np.nextafter(knots, np.inf)])
+    anywhere = np.exp(np.random.default_rng(1).uniform(-10.0, 60.0, 3000))
+    values = np.concatenate([beside, anywhere, [0.0, np.inf, np.nan]])
+    many = corrected_twice_stress_variance(1.0, values, area_correction=gamma)
+    few = [
+        corrected_twice_stress_variance(1.0, part, area_correction=gamma)
+        for part in np.array_split(values, 20)
+    ]
+    assert np.array_equal(many, np.concatenate(few), equal_nan=True)
 
 
 def test_limits_of_the_correction():
