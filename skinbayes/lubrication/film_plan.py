@@ -36,6 +36,9 @@ from skinbayes.lubrication.stribeck import LARGEST_STRAIN
 from skinbayes.roughness import rms_height
 from skinbayes.roughness.spectrum import PowerSpectrum
 
+FEW_CELLS = 200
+"""Cells of half a point contact that is solved at all nodes; what more of them change is smoother."""
+
 _PLACES = 257  # of the band at which the spectrum is compared
 
 
@@ -85,7 +88,7 @@ class FilmTablePlan:
     speeds: int = 31
     nodes: int = 96
     checked: int = 120
-    cells: int = 400
+    cells: int = 600
     inlet_length: float | None = None
     largest_strain: float = LARGEST_STRAIN
 
@@ -133,7 +136,7 @@ class FilmTablePlan:
             "spectrum": hashlib.sha256(np.ascontiguousarray(power, dtype="<f8").tobytes()).hexdigest(),
             **{name: float(getattr(self, name)) for name in numbers},
             **{name: getattr(self, name) for name in ("speeds", "nodes", "checked", "contact")},
-            **({"cells": self.cells} if self.contact == POINT else {}),
+            **({"cells": [FEW_CELLS, self.cells]} if self.contact == POINT else {}),
             **({} if self.inlet_length is None else {"inlet_length": self.inlet_length}),
             **({} if self.flow_factors == "none" else {"flow_factors": self.flow_factors}),
         }

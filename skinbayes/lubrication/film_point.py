@@ -1,11 +1,10 @@
-"""What makes a table of films under a cylinder one of films under the ball itself: smooth films, and a smooth correction."""
+"""What tables of films under the ball itself have beside those of its cylinder: smooth films, and where the drag ends."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact.hertz import sphere_contact
@@ -14,7 +13,7 @@ from skinbayes.emulation.chebyshev import grid_coefficients, zeros
 from skinbayes.lubrication._uniform_spline import spline_coefficients
 from skinbayes.lubrication.film_axes import film_scales, unit_contact
 from skinbayes.lubrication.film_reference import HIGHEST, HIGHEST_WITH_END, LOWEST, STEP, SmoothFilms
-from skinbayes.lubrication.film_table import BOUNDARY, COUETTE, FRACTION, PRESSURE_FLOW, REFERENCE
+from skinbayes.lubrication.film_table import REFERENCE
 from skinbayes.lubrication.point_drag import point_drag_integrals
 from skinbayes.lubrication.point_film import point_sweeps
 from skinbayes.lubrication.transport import no_asperities, transport_of
@@ -24,10 +23,6 @@ TERMS = 6
 
 _SKIPPED = 12  # of the slowest speeds of a smooth cylinder: thinner than cells resolve; each output is a power of λ there
 _CELLS = 500
-_STEPS = 8  # of Newton's iteration for a speed
-_STRETCHES = 0.3, 1.3
-_LATEST = 0.5  # speed by which load fractions may still differ
-_LEAST_ODDS = 1e-12  # of the load that the liquid carries
 
 
 def log_end(
@@ -56,12 +51,6 @@ def log_number_ratio() -> float:
     half_width, cylinder = unit_contact(0.0)
     line = np.log(12.0) + 3 * cylinder - 4 * half_width
     return float(np.log(6 / (hertz.contact_radius**3 * hertz.maximum_pressure)) - line)
-
-
-def log_radius_over_half_width() -> float:
-    """ln of the contact radius of a ball over the half width of its cylinder's contact, whatever the ball."""
-    hertz = sphere_contact(1.0, 1.0, reduced_modulus=1.0)
-    return float(np.log(hertz.contact_radius)) - unit_contact(0.0)[0]
 
 
 def smooth_point_films(low: float, high: float, *, endless: bool = True) -> SmoothFilms:
@@ -119,99 +108,3 @@ def relative_outputs(
     for output, reference in REFERENCE.items():
         found[:, output] -= parts[reference]
     return found
-
-
-def whole_drag(outputs: FloatArray, log_number: FloatArray) -> FloatArray:
-    """Outputs of cylinders, shape ``(M, 6, S)``, with the whole drag of the liquid in place of its pressure flow."""
-    found = outputs.copy()
-    couette = log_number + outputs[:, COUETTE] - np.log(3.0)
-    found[:, PRESSURE_FLOW] = np.logaddexp(outputs[:, PRESSURE_FLOW], couette)
-    return found
-
-
-def similar_speeds(
-    point: FloatArray, speeds: FloatArray, line: FloatArray, places: FloatArray, wanted: tuple[float, float]
-) -> FloatArray:
-    """Speeds of balls at which asperities carry what they carry under their cylinders: ``shift + stretch × speed``.
-
-    Parameters
-    ----------
-    point : outputs of M balls, shape ``(M, 6, K)``, at K speeds, in the unit of each material, dimensionless
-    speeds : these speeds, rising, dimensionless, shape ``(K,)``
-    line, places : those of the cylinders, shape ``(M, 6, S)``, at S speeds, shape ``(S,)``
-    wanted : two load fractions that are carried at similar speeds, dimensionless
-
-    Returns
-    -------
-    similar : shift and stretch, dimensionless, shape ``(M, 2)``
-    """
-    odds = np.log(np.array(wanted)) - np.log1p(-np.array(wanted))
-    found = np.empty((len(point), 2))
-    for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
-        first, second = _Continued(speeds, log_odds(of_ball[FRACTION])).place_of(odds)
-        begin, end = _Continued(places, log_odds(of_cylinder[FRACTION])).place_of(odds)
-        stretch = np.clip((second - first) / (end - begin), *_STRETCHES)
-        found[row] = first - stretch * begin, stretch
-    return found
-
-
-def correction(point: FloatArray, line: FloatArray, speeds: FloatArray, places: FloatArray) -> FloatArray:
-    """What a ball has beyond its cylinder, shape ``(M, 6, K)``; smooth in everything.
-
-    Both are compared at similar speeds (`similar_speeds`), for a ball about 1.25 times that of its cylinder. What is left of the
-    difference of load fractions, which fall by many powers of ten, is again one of speeds; the boundary term is compared by
-    its ratio to the load fraction, the same wherever A ∝ p.
-
-    Parameters
-    ----------
-    point : relative outputs of M balls, shape ``(M, 6, K)``
-    line : those of their cylinders, at all speeds of a table, shape ``(M, 6, S)``
-    speeds : K speeds, in the unit of each material, dimensionless
-    places : S speeds, likewise, rising
-    """
-    found = point - line[:, :, np.searchsorted(places, speeds - 1e-9)]
-    for row, (of_ball, of_cylinder) in enumerate(zip(point, line, strict=True)):
-        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))
-        later = np.clip(speeds - odds.place_of(log_odds(of_ball[FRACTION])), -_LATEST, _LATEST)
-        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])
-        found[row, FRACTION] = later
-        found[row, BOUNDARY] = of_ball[BOUNDARY] - of_ball[FRACTION] - ratio(speeds - later)
-    return found
-
-
-def corrected(line: FloatArray, addition: FloatArray, places: FloatArray) -> FloatArray:
-    """Relative outputs of balls, shape ``(M, 6, S)``, from those of their cylinders and the `correction` at the S speeds."""
-    found = line + addition
-    for row, of_cylinder in enumerate(line):
-        earlier = places - addition[row, FRACTION]
-        odds = _Continued(places, log_odds(of_cylinder[FRACTION]))(earlier)
-        ratio = _Continued(places, of_cylinder[BOUNDARY] - of_cylinder[FRACTION])(earlier)
-        found[row, FRACTION] = -np.logaddexp(0.0, -odds)
-        found[row, BOUNDARY] = found[row, FRACTION] + ratio + addition[row, BOUNDARY]
-    return found
-
-
-class _Continued:
-    """A cubic spline through values at places, and straight on at both ends."""
-
-    def __init__(self, places: FloatArray, values: FloatArray) -> None:
-        self._spline = CubicSpline(places, values)
-        self._slope = self._spline.derivative()
-        self._ends, self._points = places[[0, -1]], (places, values)
-
-    def __call__(self, place: FloatArray) -> FloatArray:
-        held = np.clip(place, *self._ends)
-        return np.asarray(self._spline(held) + self._slope(held) * (place - held))
-
-    def place_of(self, values: FloatArray) -> FloatArray:
-        """Where a falling function has given values: Newton steps from straight lines between the points."""
-        places, points = self._points
-        place = np.interp(-values, -points, places)
-        for _ in range(_STEPS):
-            place = place - (self(place) - values) / self._slope(np.clip(place, *self._ends))
-        return place
-
-
-def log_odds(log_fraction: FloatArray) -> FloatArray:
-    """ln f/(1 − f) of ln f."""
-    return np.asarray(log_fraction - np.log(np.maximum(-np.expm1(log_fraction), _LEAST_ODDS)))

@@ -11,7 +11,6 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray, IndexArray
 from skinbayes.contact.line_contact import line_contact
-from skinbayes.emulation.chebyshev import grid_coefficients
 from skinbayes.lubrication._uniform_spline import cell_of, spline_coefficients
 from skinbayes.lubrication.film import lubricated_films, lubrication_number_per_product
 
@@ -137,36 +136,21 @@ def _chebyshev(place: FloatArray, count: int) -> list[FloatArray]:
 @lru_cache(maxsize=1)
 def smooth_films() -> SmoothFilms:
     """Solve the smooth films, once in a process (0.3 s)."""
-    return SmoothFilms(spline_coefficients(_all_outputs(None)), LOWEST, STEP)
-
-
-def smooth_films_with_end(ends: FloatArray) -> SmoothFilms:
-    """Smooth films whose liquid ends at X = ``ends``, dimensionless, at the `zeros` of the coordinate of the end."""
-    logs = np.array([_all_outputs(float(end)) for end in ends])
-    series = [grid_coefficients(part, ends=False) for part in logs.swapaxes(0, 1)]
-    return SmoothFilms(spline_coefficients(np.concatenate(series)), LOWEST, STEP, True)
-
-
-def _all_outputs(end: float | None) -> FloatArray:
-    """ln of the four outputs at all ln λ, shape ``(4, S)``."""
-    count = round(((HIGHEST if end is None else HIGHEST_WITH_END) - LOWEST) / STEP) + 1
+    count = round((HIGHEST - LOWEST) / STEP) + 1
     log_number = np.asarray(LOWEST + STEP * np.arange(count), dtype=np.float64)
-    # where liquid ends, all films share a grid, on which the slow ones lead to the fast ones
-    part = _PART if end is None else count
-    parts = [_outputs(log_number[start : start + part], end) for start in range(0, count, part)]
-    return np.concatenate(parts, axis=1)
+    parts = [_outputs(log_number[start : start + _PART]) for start in range(0, count, _PART)]
+    return SmoothFilms(spline_coefficients(np.concatenate(parts, axis=1)), LOWEST, STEP)
 
 
-def _outputs(log_number: FloatArray, end: float | None) -> FloatArray:
+def _outputs(log_number: FloatArray) -> FloatArray:
     """ln of the four outputs, shape ``(4, K)``; a ball with b/Rc = 1 makes films and friction those without dimension."""
     modulus = 4 / np.pi
     hertz = line_contact(1.0, 1.0, reduced_modulus=modulus)
     products = np.exp(log_number) / lubrication_number_per_product(1.0, hertz)
     height, slope = float(hertz.half_width**2), float(hertz.half_width)
     films = lubricated_films(
-        products, cylinder_radius=1.0, load_per_length=1.0, reduced_modulus=modulus, nodes=_NODES,
-        inlet_length=None if end is None else (end - 1) * slope,
-    )  # fmt: skip
+        products, cylinder_radius=1.0, load_per_length=1.0, reduced_modulus=modulus, nodes=_NODES
+    )
     return np.log(
         np.array(
             [

@@ -16,21 +16,15 @@ from skinbayes.lubrication._uniform_spline import spline_coefficients
 from skinbayes.lubrication.contact_films import LINE, POINT
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
-from skinbayes.lubrication.film_plan import FilmTablePlan
+from skinbayes.lubrication.film_plan import FEW_CELLS, FilmTablePlan
 from skinbayes.lubrication.film_point import (
-    TERMS,
-    corrected,
-    correction,
     end_coordinate,
     log_end,
-    log_radius_over_half_width,
     relative_outputs,
-    similar_speeds,
     smooth_point_films,
-    whole_drag,
 )
-from skinbayes.lubrication.film_reference import SmoothFilms, smooth_films, smooth_films_with_end
-from skinbayes.lubrication.film_sweeps import FAINT, HALF, Ball
+from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_sweeps import Ball
 from skinbayes.lubrication.film_table import SLOWEST, FilmTable
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
 from skinbayes.lubrication.point_film import CELLS
@@ -39,10 +33,10 @@ from skinbayes.lubrication.stribeck import THICKEST_FILM
 _ANCHOR_COUNT = (
     5  # nodes of an axis, at most, at which the anchors are found; between them they are polynomials
 )
-_CHECK_NODES, _CHECK_CELLS = 128, 600
-_EVERY = 2  # of the speeds at which the cylinder is solved, the ball is, too
-_CORRECTED = 0.5  # nodes at which the ball is solved, over those at which its cylinder is
-_ANCHOR_SPEEDS, _ANCHOR_CELLS = np.linspace(-1.6, 1.4, 13), 150
+_CHECK_NODES, _CHECK_CELLS = 128, 800
+# what more cells of a ball change is smooth: it is found at every second speed, and at fewer nodes, of all and of an axis
+_EVERY = 2
+_FINER, _FINER_AT_LEAST = 0.4, 4
 _SPARE = 1e-3  # of ln, beyond the ends of the drag
 
 
@@ -90,49 +84,46 @@ def build_film_table(
     >>> print(table.axes.names, table.contains(**ball), table.contains(**{**ball, "rms_height": 1e-5}))
     () True False
     """
-    axes = plan.axes
+    axes, point = plan.axes, plan.contact == POINT
     coarse = tuple(min(count, _ANCHOR_COUNT) for count in axes.counts)
     places, coarse_places = _nodes_of(axes.counts), _nodes_of(coarse)
-    sweeps = len(places) + len(coarse_places) + plan.checked
-    point_places = _nodes_of(_corrected_at(axes.counts)) if plan.contact == POINT else np.empty((0, 0))
-    sweeps += 3 * len(point_places)
+    finer_places = _nodes_of(_finer_at(axes.counts)) if point else np.empty((0, 0))
+    sweeps = len(places) + len(coarse_places) + 2 * len(finer_places) + plan.checked
 
     with Tasks(processes, sweeps, progress, kept) as solve:
         balls = (plan.ball(axes.representative(place)) for place in coarse_places)
-        anchors = solve("anchors", Ball.anchors, balls)
+        anchors = solve("anchors", partial(_anchors, contact=plan.contact), balls)
         anchor_terms = grid_coefficients(anchors.reshape(*coarse, 2), ends=False)
-        at_nodes = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
         more = [(0, count - size) for count, size in zip(axes.counts, coarse, strict=True)]
-        anchor_terms = np.pad(anchor_terms, [*more, (0, 0)])
-
         grid = np.linspace(SLOWEST, plan.fastest, plan.speeds_solved)
-        numbers = at_nodes[:, :1] + at_nodes[:, 1:] * grid
-        balls = (plan.ball(axes.representative(place)) for place in places)
-        outputs = solve("outputs", partial(_outputs, nodes=plan.nodes), zip(balls, numbers, strict=True))
-        smooth = smooth_films()
-        ends = (0.0, 0.0)
-        if plan.contact == LINE:
-            outputs = relative_outputs(outputs, numbers, smooth)
-        else:
+
+        def solved(
+            stage: str, there: FloatArray, speeds: FloatArray, cells: int
+        ) -> tuple[FloatArray, FloatArray]:
+            """Outputs at M places and the ln λ of some speeds, shape ``(M, K)``."""
+            anchored = _at(anchor_terms, there)
+            numbers = anchored[:, :1] + anchored[:, 1:] * speeds
+            balls = (plan.ball(axes.representative(place)) for place in there)
+            outputs_of = partial(_outputs, nodes=plan.nodes, contact=plan.contact, cells=cells)
+            return solve(stage, outputs_of, zip(balls, numbers, strict=True)), numbers
+
+        outputs, numbers = solved("outputs", places, grid, FEW_CELLS)
+        smooth, ends, there = smooth_films(), (0.0, 0.0), None
+        if point:
+            few = grid[::_EVERY]
+            on_many, _ = solved("on many cells", finer_places, few, plan.cells)
+            on_few, _ = solved("on few cells", finer_places, few, FEW_CELLS)
+            more_cells = CubicSpline(few, on_many - on_few, axis=-1)(grid)
+            terms = grid_coefficients(more_cells.reshape(*_finer_at(axes.counts), -1), ends=False)
+            outputs = outputs + _at(terms, places).reshape(outputs.shape)
             ends = _ends_of(plan)
-            there = _end_coordinates(plan, plan.axes.representative(places), ends)
-            outputs = relative_outputs(
-                whole_drag(outputs, numbers), numbers, _smooth_cylinders(plan, ends), there
-            )
-            addition, smooth, similar = _correction(plan, solve, point_places, anchor_terms, grid, ends)
-            shape = _corrected_at(axes.counts)
-            terms = grid_coefficients(similar.reshape(*shape, 2), ends=False)
-            shift, stretch = summed(terms, list(places.T[:, :, None]), len(places))[:, 0].T
-            at_nodes = np.stack([at_nodes[:, 0] + at_nodes[:, 1] * shift, at_nodes[:, 1] * stretch], axis=1)
-            anchor_terms = grid_coefficients(at_nodes.reshape(*axes.counts, 2), ends=False)
-            addition = CubicSpline(grid[::_EVERY], addition, axis=-1)(grid)
-            terms = grid_coefficients(addition.reshape(*shape, -1), ends=False)
-            there = summed(terms, list(places.T[:, :, None]), len(places))[:, 0]
-            outputs = corrected(outputs, there.reshape(outputs.shape), grid)
-        splines = spline_coefficients(outputs)
+            there = _end_coordinates(plan, axes.representative(places), ends)
+            smooth = smooth_point_films(*ends, endless=plan.inlet_length is None)
+        splines = spline_coefficients(relative_outputs(outputs, numbers, smooth, there))
         # at the last speeds the ball is smooth to 1e-4: exactly so from there on
         splines[:, (0, 2, 3, 4), -3:] = 0.0
         terms = grid_coefficients(splines.reshape(*axes.counts, -1), ends=False)
+        anchor_terms = np.pad(anchor_terms, [*more, (0, 0)])
         table = FilmTable(
             axes=axes,
             coefficients=np.ascontiguousarray(np.concatenate([anchor_terms, terms], axis=-1)),
@@ -163,9 +154,18 @@ def _outputs(
     return ball.outputs(log_number, nodes, contact=contact, cells=cells)
 
 
-def _corrected_at(counts: tuple[int, ...]) -> tuple[int, ...]:
-    """Nodes of the axes at which the ball itself is solved."""
-    return tuple(max(min(count, 3), round(_CORRECTED * count)) for count in counts)
+def _at(terms: FloatArray, places: FloatArray) -> FloatArray:
+    """Series in the axes at M places, shape ``(M, columns)``."""
+    return summed(terms, list(places.T[:, :, None]), len(places))[:, 0]
+
+
+def _anchors(ball: Ball, contact: str) -> tuple[float, float]:
+    return ball.anchors() if contact == LINE else ball.point_anchors(FEW_CELLS)
+
+
+def _finer_at(counts: tuple[int, ...]) -> tuple[int, ...]:
+    """Numbers of nodes of the axes at which a ball is solved on many cells."""
+    return tuple(max(min(count, _FINER_AT_LEAST), round(_FINER * count)) for count in counts)
 
 
 def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
@@ -182,67 +182,12 @@ def _ends_of(plan: FilmTablePlan) -> tuple[float, float]:
     return float(ends.min()) - _SPARE, float(ends.max()) + _SPARE
 
 
-def with_whole_drag(smooth: SmoothFilms) -> SmoothFilms:
-    """Smooth films of a cylinder with the whole drag of the liquid in place of the pressure flow."""
-    log_number = smooth.lowest + smooth.step * np.arange(smooth.coefficients.shape[1] - 2)
-    terms = smooth.terms
-    series = []
-    for end in zeros(terms) if smooth.everywhere else [0.0]:
-        values = np.array(smooth(log_number, range(4), end=np.full(log_number.shape, end)))
-        values[2] = np.logaddexp(values[2], log_number + values[1] - np.log(3.0))
-        series.append(values)
-    coefficients = [grid_coefficients(part, ends=False) for part in np.array(series).swapaxes(0, 1)]
-    return replace(smooth, coefficients=spline_coefficients(np.concatenate(coefficients)))
-
-
-def _smooth_cylinders(plan: FilmTablePlan, ends: tuple[float, float]) -> SmoothFilms:
-    """Smooth films of the cylinders whose liquid ends where that of the balls does."""
-    if plan.inlet_length is None:
-        return with_whole_drag(smooth_films())
-    places = ends[0] + (ends[1] - ends[0]) * (zeros(TERMS) + 1) / 2
-    return with_whole_drag(smooth_films_with_end(1 + np.expm1(places) * np.exp(log_radius_over_half_width())))
-
-
 def _end_coordinates(
     plan: FilmTablePlan, log_parameters: FloatArray, ends: tuple[float, float]
 ) -> FloatArray:
     """The end of the drag of balls, −1 … 1, for ln of their parameters, SI, shape ``(M, 6)``."""
     log_ends = log_end(list(log_parameters.T), plan.poisson_ratio_bulk, plan.inlet_length)
     return end_coordinate(log_ends, *ends)
-
-
-def _correction(
-    plan: FilmTablePlan,
-    solve: Tasks,
-    places: FloatArray,
-    anchor_terms: FloatArray,
-    grid: FloatArray,
-    ends: tuple[float, float],
-) -> tuple[FloatArray, SmoothFilms, FloatArray]:
-    """What balls at M places have beyond their cylinders at K speeds, shape ``(M, 6, K)``, the smooth films, and the similar
-    speeds, shape ``(M, 2)``.
-    """
-    line_anchors = summed(anchor_terms, list(places.T[:, :, None]), len(places))[:, 0]
-    parameters = plan.axes.representative(places)
-
-    def solved(stage: str, log_numbers: FloatArray, contact: str, cells: int) -> FloatArray:
-        balls = (plan.ball(one) for one in parameters)
-        outputs = partial(_outputs, nodes=plan.nodes, contact=contact, cells=cells)
-        return solve(stage, outputs, zip(balls, log_numbers, strict=True))
-
-    rough = line_anchors[:, :1] + line_anchors[:, 1:] * _ANCHOR_SPEEDS
-    roughly = solved("balls on few cells", rough, POINT, _ANCHOR_CELLS)
-    numbers = line_anchors[:, :1] + line_anchors[:, 1:] * grid
-    line = solved("cylinders of balls", numbers, LINE, plan.cells)
-    similar = similar_speeds(roughly, _ANCHOR_SPEEDS, line, grid, (HALF, FAINT))
-    there = similar[:, :1] + similar[:, 1:] * grid[::_EVERY]
-    few = line_anchors[:, :1] + line_anchors[:, 1:] * there
-    point = solved("balls", few, POINT, plan.cells)
-    smooth = smooth_point_films(*ends, endless=plan.inlet_length is None)
-    end = _end_coordinates(plan, parameters, ends)
-    point = relative_outputs(point, few, smooth, end)
-    line = relative_outputs(whole_drag(line, numbers), numbers, _smooth_cylinders(plan, ends), end)
-    return correction(point, line, grid[::_EVERY], grid), smooth, similar
 
 
 def held_out_places(table: FilmTable, plan: FilmTablePlan, count: int) -> tuple[FloatArray, FloatArray]:

@@ -29,7 +29,8 @@ from skinbayes.lubrication.transport import no_asperities, transport_of
 CELLS = 360
 """Cells of half the contact and its surroundings unless told otherwise."""
 
-_RINGS_PER_RAY = 2.5
+_RINGS_PER_RAY, _RINGS_PER_RAY_OF_FEW = 2.5, 4.0
+_FEW = 300  # cells below which rings matter more: the edge of a thin film is narrower than an angle is coarse
 _APPROACHES = (0.0, 1.0, 3.0)  # of first guesses, beside a film thicker than the asperities
 _WEAKEST = 1e-7  # of the squared roughness: below this λ everything is linear in λ
 _FASTEST = 1e5  # λ beyond which an inlet without end is longer than any grid
@@ -320,7 +321,7 @@ def cells_on_grid(cells: int) -> int:
 
 
 def _rays(cells: int) -> int:
-    return max(round(np.sqrt(cells / _RINGS_PER_RAY)), 4)
+    return max(round(np.sqrt(cells / (_RINGS_PER_RAY if cells >= _FEW else _RINGS_PER_RAY_OF_FEW))), 4)
 
 
 def _rings(cells: int) -> int:

@@ -18,8 +18,9 @@ from skinbayes.lubrication.contact_films import LINE, POINT
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, film_scales
 from skinbayes.lubrication.film_contraction import contract
 from skinbayes.lubrication.film_plan import FilmTablePlan
-from skinbayes.lubrication.film_point import relative_outputs, similar_speeds, whole_drag
+from skinbayes.lubrication.film_point import relative_outputs
 from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_similarity import similar_speeds, whole_drag, with_whole_drag
 from skinbayes.lubrication.film_sweeps import FAINT, HALF, Ball
 from skinbayes.lubrication.film_table import (
     BOUNDARY,
@@ -31,7 +32,7 @@ from skinbayes.lubrication.film_table import (
     SLOWEST,
     FilmTable,
 )
-from skinbayes.lubrication.film_table_build import held_out_places, with_whole_drag
+from skinbayes.lubrication.film_table_build import held_out_places
 from skinbayes.lubrication.film_table_evaluation import LubricatedBalls, tabulated_friction
 from skinbayes.lubrication.smooth_memory import LOG_NUMBERS, smooth_outputs
 from skinbayes.lubrication.viscoelastic_correction import (
