@@ -91,13 +91,20 @@ def test_intervals_of_a_small_design_cover_the_truth(small: Problem) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["small", "finger-stribeck-shift"])
 def test_the_sampler_finds_the_posterior_of_a_simulation(name: str, small: Problem) -> None:
-    """Ensembles of walkers and importance sampling share the density and nothing else."""
+    """Ensembles of walkers alone and importance sampling share the density and nothing else."""
     maker = small if name == "small" else load_problem(name)
     rng = np.random.default_rng(25)
     problem = with_data(maker, maker.simulate(possible_draws(maker, rng, 1)[0], rng))
     weighted = importance_sample(problem, rng)
     options = SamplerOptions(
-        seed=26, ess=400, ensembles=2, walkers=40, r_hat=1.02, steps_over_tau=30, max_steps=4000
+        seed=26,
+        ess=400,
+        ensembles=2,
+        walkers=40,
+        r_hat=1.02,
+        steps_over_tau=30,
+        max_steps=4000,
+        importance=False,
     )
     chains = run_ensembles(problem.target(), options)
     assert chains.report.converged, chains.report.sentence()
