@@ -8,6 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import BoolArray, FloatArray, floats
 from skinbayes.errors import InputError
+from skinbayes.roughness import TabulatedSpectrum
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,3 +68,14 @@ class MeasuredSpectrum:
     def reliable(self) -> BoolArray:
         """Which bins lie in the reliable band, shape ``(K,)``."""
         return (self.wavevector >= self.wavevector_min) & (self.wavevector <= self.wavevector_max)
+
+    def tabulated(self) -> TabulatedSpectrum:
+        """The reliable bins as a spectrum for contact mechanics, a power law between them, C in m^4.
+
+        Raises
+        ------
+        InputError
+            if fewer than two bins are reliable
+        """
+        used = self.reliable
+        return TabulatedSpectrum(self.wavevector[used], self.power_spectral_density[used])
