@@ -13,7 +13,14 @@ from skinbayes.errors import InputError
 from skinbayes.roughness import rms_height, rms_slope, total_area_ratio
 from skinbayes.topography.anisotropy import Anisotropy, anisotropy_of
 from skinbayes.topography.area_spectrum import SpectrumNumbers, spectrum_numbers, spectrum_of, usual_window
-from skinbayes.topography.artefacts import Plateau, find_plateaus, find_spikes, invert_replica, remove_spikes
+from skinbayes.topography.artefacts import (
+    MOST_SPIKES,
+    Plateau,
+    find_plateaus,
+    find_spikes,
+    invert_replica,
+    remove_spikes,
+)
 from skinbayes.topography.band import Band, reliable_band
 from skinbayes.topography.bins import BINS_PER_DECADE
 from skinbayes.topography.height_map import HeightMap, LineProfile
@@ -216,8 +223,17 @@ def _findings(one: SurfaceAnalysis) -> Iterator[str]:
             f"{100 * plateau.share:.2g} % of the pixels have exactly the {end} height that was read: the instrument was "
             "saturated there, and the spectrum is that of a surface cut off."
         )
+    share = one.spikes / surface.height.size
     if one.spikes and not any("spike" in step for step in surface.steps):
-        yield f"{one.spikes} pixels stand out of their neighbours like spikes and were kept."
+        few = share <= MOST_SPIKES
+        yield (
+            f"{one.spikes} pixels ({100 * share:.2g} %) stand out of their neighbours"
+            + (
+                " like spikes and were kept."
+                if few
+                else "; so many are no spikes, but steps, or heights in coarse counts."
+            )
+        )
     if one.window == "none" and not surface.periodic:
         yield (
             "Without a window the edges of a field that is not periodic add a spectrum of their own, which falls as 1/q³ and "

@@ -69,7 +69,9 @@ def surface_numbers(surface: HeightMap | LineProfile) -> SurfaceNumbers:
         skewness = kurtosis = float("nan")
     if isinstance(surface, LineProfile):
         along = _mean_square(np.diff(height), surface.pixel_size)
-        return SurfaceNumbers(np.sqrt(variance), float(np.sqrt(2 * along)), float("nan"), skewness, kurtosis)
+        return SurfaceNumbers(
+            float(np.sqrt(variance)), float(np.sqrt(2 * along)), float("nan"), skewness, kurtosis
+        )
     del squares
     slope = _mean_square(np.diff(height, axis=1), surface.pixel_size_x)
     slope += _mean_square(np.diff(height, axis=0), surface.pixel_size_y)

@@ -85,7 +85,7 @@ def line_periodogram(line: LineProfile, window: str) -> tuple[FloatArray, FloatA
 
 def _axis(pixels: int, size: float) -> tuple[FloatArray, FloatArray]:
     """Wavevectors from 0 to that of Nyquist, 1/m, and how many of −q and q each stands for."""
-    wavevector = 2 * np.pi / (pixels * size) * np.arange(pixels // 2 + 1)
+    wavevector: FloatArray = np.arange(pixels // 2 + 1, dtype=np.float64) * (2 * np.pi / (pixels * size))
     count = np.full(wavevector.size, 2.0)
     count[0] = 1.0
     if pixels % 2 == 0:
