@@ -11,7 +11,6 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.roughness import rms_height, rms_slope, total_area_ratio
-from skinbayes.topography.anisotropy import Anisotropy, anisotropy_of
 from skinbayes.topography.area_spectrum import SpectrumNumbers, spectrum_numbers, spectrum_of, usual_window
 from skinbayes.topography.artefacts import (
     MOST_SPIKES,
@@ -23,6 +22,7 @@ from skinbayes.topography.artefacts import (
 )
 from skinbayes.topography.band import Band, reliable_band
 from skinbayes.topography.bins import BINS_PER_DECADE
+from skinbayes.topography.directional_spectrum import DirectionalSpectrum, directional_spectrum_of
 from skinbayes.topography.height_map import HeightMap, LineProfile
 from skinbayes.topography.line_spectrum import LINE_BINS_PER_DECADE, isotropic_spectrum, line_spectrum
 from skinbayes.topography.measured_spectrum import MeasuredSpectrum
@@ -66,7 +66,7 @@ class SurfaceAnalysis:
     in_band: SpectrumNumbers
     band: Band
     trend_share: FloatArray
-    anisotropy: Anisotropy | None
+    anisotropy: DirectionalSpectrum | None
 
     @property
     def area_ratio_in_band(self) -> float:
@@ -175,7 +175,7 @@ def analyse_surface(
         low, high = (used[0], used[-1]) if used.size else (limits.wavevector_min, limits.wavevector_max)
         whole = spectrum_numbers(periodogram)
         inside = spectrum_numbers(periodogram, wavevector_min=low, wavevector_max=high)
-        directions = anisotropy_of(periodogram, per_decade, low, high)
+        directions = directional_spectrum_of(periodogram, per_decade, low, high)
         angles = (np.arange(48) + 0.5) * np.pi / 96
         q = spectrum.wavevector[:, None]
         waves = trend_share(

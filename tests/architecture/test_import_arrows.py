@@ -48,9 +48,11 @@ MAY_KNOW: dict[str, set[str]] = {
     "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
-    "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
-    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
+    "plot": {*WORDS, "units", "topography", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
+    "report": {*WORDS, "atomic", "units", "topography", "statistics", "diagnose", "files", "forward", "problem", "fit",
+               "comparison", "plot"},
+    "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "plot", "report",
+            "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
@@ -62,6 +64,7 @@ FIT_METHODS_MAY_DRAW = "plot"
 """``Fit.plot_*`` reach up to the figures, lazily: a convenience of the result, not a dependency of the module."""
 
 HOMES: dict[str, set[str]] = {
+    "SurfaceTopography": {"files"},
     "arviz": {"fit"},
     "click": {"cli"},
     "corner": {"plot"},
@@ -85,6 +88,7 @@ HOMES: dict[str, set[str]] = {
     },
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
+    "PIL": {"files"},
     "platformdirs": {"emulation"},
     "pydantic": {"files", "fit"},
     "rich": {"cli"},

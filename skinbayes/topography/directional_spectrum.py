@@ -20,7 +20,7 @@ BY_CHANCE = 0.05
 """Probability with which an isotropic surface has a larger degree than ``degree_by_chance``."""
 
 
-class Anisotropy(NamedTuple):
+class DirectionalSpectrum(NamedTuple):
     """A power spectrum by direction. Angles are of the wavevector, from the rows of the map towards rising row numbers.
 
     Ridges, furrows and scratches run at right angles to the direction of their wavevector.
@@ -49,14 +49,14 @@ class Anisotropy(NamedTuple):
     slope_degree_by_chance: float
 
 
-def anisotropy(
+def directional_spectrum(
     surface: HeightMap,
     *,
     window: Window | None = None,
     bins_per_decade: int = BINS_PER_DECADE,
     wavevector_min: float = 0.0,
     wavevector_max: float = np.inf,
-) -> Anisotropy:
+) -> DirectionalSpectrum:
     """Power spectrum of a map by direction, C(q, φ), with a degree and a direction for each bin and for the slopes.
 
     ``degree exp(2iφ) = ⟨C exp(2iφ)⟩/⟨C⟩ − ⟨exp(2iφ)⟩`` over the modes of a bin: 0 for an isotropic surface on any field, 1 for a
@@ -71,7 +71,7 @@ def anisotropy(
 
     Returns
     -------
-    anisotropy : `Anisotropy`
+    spectrum : `DirectionalSpectrum`
 
     References
     ----------
@@ -82,17 +82,17 @@ def anisotropy(
     >>> import numpy as np
     >>> x, y = np.arange(64), np.arange(64)[:, None]
     >>> grating = HeightMap(np.sin(2 * np.pi * (8 * x + 8 * y) / 64), pixel_size_x=1.0, pixel_size_y=1.0, periodic=True)
-    >>> found = anisotropy(grating)
+    >>> found = directional_spectrum(grating)
     >>> round(found.slope_degree, 6), round(float(np.degrees(found.slope_direction)), 3)
     (1.0, 45.0)
     """
     periodogram = map_periodogram(surface, usual_window(surface) if window is None else window)
-    return anisotropy_of(periodogram, bins_per_decade, wavevector_min, wavevector_max)
+    return directional_spectrum_of(periodogram, bins_per_decade, wavevector_min, wavevector_max)
 
 
-def anisotropy_of(
+def directional_spectrum_of(
     found: Periodogram, per_decade: int, wavevector_min: float = 0.0, wavevector_max: float = np.inf
-) -> Anisotropy:
+) -> DirectionalSpectrum:
     """The same of a periodogram that is there already."""
     largest = found.largest * (1 - 1e-12)
     first = int(bin_of(np.array([min(found.wavevector_x[1], found.wavevector_y[1])]), per_decade)[0])
@@ -142,7 +142,7 @@ def anisotropy_of(
     # both parts of ⟨C exp(2iφ)⟩/⟨C⟩ have the variance 1/(2 modes): its modulus is a Rayleigh variable
     chance = np.sqrt(-np.log(BY_CHANCE) / independent)
     shares = slopes[full] / total if total else np.zeros(full.size)
-    return Anisotropy(
+    return DirectionalSpectrum(
         np.exp(bins.log_wavevector),
         np.arange(SECTORS) * np.pi / SECTORS,
         by_sector,
