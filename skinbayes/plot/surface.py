@@ -88,7 +88,7 @@ def _map_figure(surface: HeightMap, rms: float, size: float) -> Figure:
     bar = figure.add_axes(((0.63 + across) / size, bottom / height, 0.1 / size, tall / height))
     figure.colorbar(picture, cax=bar, extend="both")
     bar.set_title(height_unit, fontsize="small", loc="left", pad=6.0)
-    left = 0.55 + across + 0.95
+    left = 0.55 + across + 0.75
     place = (
         (left / size, bottom / height, (size - left - 0.1) / size, tall / height)
         if wide
@@ -108,7 +108,8 @@ def _reduced(height: FloatArray) -> FloatArray:
 def _histogram(ax: Axes, height: FloatArray, rms: float, unit: str) -> None:
     """Density of heights, and the normal one of the same rms height."""
     low, high = np.quantile(height, (0.0005, 0.9995))
-    edges = np.linspace(min(low, -3.2 * rms), max(high, 3.2 * rms), 61)
+    bins = int(np.clip(height.size ** (1 / 3), 16, 60))
+    edges = np.linspace(min(low, -3.2 * rms), max(high, 3.2 * rms), bins + 1)
     counts, _ = np.histogram(height, edges)
     density = counts / (height.size * np.diff(edges))
     ax.stairs(density * rms, edges, fill=True, color=BLUE, alpha=0.45)
@@ -117,8 +118,9 @@ def _histogram(ax: Axes, height: FloatArray, rms: float, unit: str) -> None:
         x, np.exp(-0.5 * np.square(x / rms)) / np.sqrt(2 * np.pi), color=GREY, linestyle="--", linewidth=1.2
     )
     ax.set_xlabel(f"height [{unit}]")
-    ax.set_ylabel("density × rms height")
     ax.set_ylim(bottom=0.0)
+    ax.set_yticks(())
+    ax.spines["left"].set_visible(False)
 
 
 def plot_measured_spectrum(collection: SurfaceCollection, width: str | None = None) -> Figure:

@@ -15,16 +15,19 @@ from skinbayes.report.rendering import rendered, write_whole
 from skinbayes.topography import HeightMap, MeasuredSurface, SurfaceCollection
 
 REFERENCES = (
-    "B. N. J. Persson, A. Kovalev, S. N. Gorb, Tribology Letters 50 (2013) 17, 10.1007/s11249-012-0053-2: the convention of C(q) "
-    "and what friction does with it",
+    "B. N. J. Persson, A. Kovalev, S. N. Gorb, Tribology Letters 50 (2013) 17, 10.1007/s11249-012-0053-2, for the convention "
+    "of C(q) and what friction does with it",
     "T. D. B. Jacobs, T. Junge, L. Pastewka, Surface Topography: Metrology and Properties 5 (2017) 013001, "
-    "10.1088/2051-672X/aa51f8: how spectra are computed from maps and lines",
+    "10.1088/2051-672X/aa51f8, for how spectra are computed from maps and lines",
 )
 
 HEADERS = (
     "", "pixels", "field", "undefined", "rms height", "in the band", "rms slope", "in the band", "area ratio", "reliable band",
 )  # fmt: skip
 """Of the table of surfaces."""
+
+SHOWN = (0, 2, 4, 5, 6, 7, 8, 9)
+"""Those that the page shows in its table; the others stand with each surface."""
 
 
 def write_spectrum_page(collection: SurfaceCollection, path: Path, fragment: str) -> Path:
@@ -54,7 +57,8 @@ def write_spectrum_page(collection: SurfaceCollection, path: Path, fragment: str
 def surface_row(one: MeasuredSurface) -> tuple[str, ...]:
     """What a table says of a surface, under `HEADERS`; a spectrum computed elsewhere has no map."""
     spectrum, analysis = one.spectrum, one.analysis
-    band = f"{quantity(spectrum.wavevector_min, '1/m', 2)} to {quantity(spectrum.wavevector_max, '1/m', 2)}"
+    low, high = (quantity(end, "1/m", 2) for end in (spectrum.wavevector_min, spectrum.wavevector_max))
+    band = f"{low.removesuffix(' 1/m')} to {high}"
     if analysis is None:
         return (one.name, "", "", "", "", "", "", "", "", band)
     surface, own, inside = analysis.surface, analysis.own, analysis.in_band
@@ -130,8 +134,8 @@ def _context(collection: SurfaceCollection, fragment: str) -> dict[str, Any]:
         "converged": True,
         "said": collection_sentences(collection),
         "spectrum": drawn(collection, spectrum),
-        "headers": HEADERS,
-        "rows": [surface_row(one) for one in collection.surfaces],
+        "headers": [HEADERS[i] for i in SHOWN],
+        "rows": [[surface_row(one)[i] for i in SHOWN] for one in collection.surfaces],
         "surfaces": [_surface(one, i) for i, one in enumerate(collection.surfaces)],
         "fragment": fragment,
         "references": REFERENCES,
@@ -142,9 +146,9 @@ def _surface(one: MeasuredSurface, number: int) -> dict[str, Any]:
     analysis = one.analysis
     if analysis is None:
         return {
-            "name": one.name, "kind": one.kind, "steps": [], "findings": [
+            "name": one.name, "kind": _read_as(one), "steps": [], "numbers": [], "pictures": [], "findings": [
                 "The spectrum was computed elsewhere and is taken as it is, converted to the convention of the paper."
-            ], "pictures": [],
+            ],
         }  # fmt: skip
     is_map = isinstance(analysis.surface, HeightMap)
     pictures = [
@@ -161,19 +165,26 @@ def _surface(one: MeasuredSurface, number: int) -> dict[str, Any]:
                 f"directions-{number}", plot_directions, "The spectrum by direction",
                 "C(q, φ) over its mean over directions in colour, and the degree of anisotropy against wavevector.",
                 "Above: red directions have more power than the mean over directions, blue ones less; φ is counted from the x "
-                "axis towards y, as the map is drawn, and ridges or furrows run at right angles to their wave. Below: 0 is isotropic, "
-                "1 a grating; an isotropic surface exceeds the dashed line in 5 % of maps.",
+                "axis towards y, as the map is drawn, and ridges or furrows run at right angles to their wave. Below: 0 is "
+                "isotropic, 1 a grating; an isotropic surface exceeds the dashed line in 5 % of maps.",
             )
         )  # fmt: skip
     return {
         "name": one.name,
-        "kind": one.kind,
+        "kind": _read_as(one),
         "steps": [*analysis.surface.steps, _window(analysis.window)],
         "band": f"from {analysis.band.lower} to {analysis.band.upper}",
         "numbers": _numbers(one),
         "findings": analysis.findings(),
         "pictures": [drawn(one, drawing) for drawing in pictures],
     }
+
+
+def _read_as(one: MeasuredSurface) -> str:
+    if one.analysis is None:
+        return f"Read as {one.kind}, {one.spectrum.wavevector.size} rows."
+    row = surface_row(one)
+    return f"Read as {one.kind}: {row[1]} pixels, {row[3]} of them undefined."
 
 
 def _window(name: str) -> str:
@@ -190,6 +201,7 @@ def _numbers(one: MeasuredSurface) -> list[str]:
     if not np.isnan(whole.rms_height):
         said.append(
             f"rms height {quantity(own.rms_height, 'm')} counted pixel by pixel, {quantity(whole.rms_height, 'm')} from the "
-            f"whole spectrum; rms slope {own.rms_slope:.3g} from neighbouring pixels, {whole.rms_slope:.3g} from the whole spectrum"
+            f"whole spectrum; rms slope {own.rms_slope:.3g} from neighbouring pixels, {whole.rms_slope:.3g} from the whole "
+            "spectrum"
         )
     return said

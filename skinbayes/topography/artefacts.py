@@ -75,12 +75,14 @@ def find_spikes(surface: HeightMap | LineProfile) -> BoolArray:
     >>> np.flatnonzero(find_spikes(LineProfile(height, pixel_size=1e-6))).tolist()
     [40]
     """
-    from scipy.ndimage import median_filter
+    from scipy.ndimage import distance_transform_edt, median_filter
 
     height = surface.height
     defined = ~np.isnan(height)
-    # an undefined pixel takes part as the middle of all heights
-    filled = height if defined.all() else np.where(defined, height, np.nanmedian(height))
+    filled = height
+    if not defined.all():  # an undefined pixel takes part as the one next to it
+        nearest = distance_transform_edt(~defined, return_distances=False, return_indices=True)
+        filled = height[tuple(nearest)]
     away = np.abs(filled - median_filter(filled, size=3 if height.ndim == 2 else 5, mode="nearest"))
     scale = _MAD * float(np.median(away[defined]))
     if scale == 0.0:  # more than half of the pixels are flat: quantised heights, or nothing to compare with
