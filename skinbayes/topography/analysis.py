@@ -137,7 +137,8 @@ def analyse_surface(
     >>> print(f"{1e6 * found.own.rms_height:.2f} µm, of the spectrum {1e6 * found.whole.rms_height:.2f} µm")
     1.00 µm, of the spectrum 1.00 µm
     """
-    if np.nanmax(surface.height) == np.nanmin(surface.height):
+    extent = float(np.nanmax(surface.height) - np.nanmin(surface.height))
+    if extent == 0:
         raise InputError("all heights are the same: there is no roughness")
     plateaus = find_plateaus(surface)
     lacking = undefined_share(surface)
@@ -153,7 +154,7 @@ def analyse_surface(
     trend = ("none" if surface.periodic else "curvature") if trend is None else trend
     surface = remove_trend(surface, trend)
     own = surface_numbers(surface)
-    if not own.rms_height > 1e-9 * float(np.nanmax(np.abs(surface.height)) or 1.0) or not own.rms_slope:
+    if not own.rms_height > 1e-9 * extent or not own.rms_slope:
         raise InputError("nothing is left when the trend is gone: there is no roughness")
     surface = fill_undefined(surface)
     limits = reliable_band(surface, tip_radius=tip_radius, resolution=resolution)

@@ -149,7 +149,7 @@ class Plateau(NamedTuple):
 def find_plateaus(surface: HeightMap | LineProfile) -> tuple[Plateau, ...]:
     """Saturated areas: one extreme height that far more pixels have than the height next to it.
 
-    At least 16 pixels and 0.01 % of them have exactly the largest (smallest) height, and five times as many as have the second
+    At least 16 pixels and 0.01 % of them have exactly the largest (smallest) height, and twice as many as have the second
     one. An instrument that ran out of its range leaves such areas; a rough surface, quantised or not, thins out towards its
     extremes.
 
@@ -183,6 +183,6 @@ def find_plateaus(surface: HeightMap | LineProfile) -> tuple[Plateau, ...]:
             continue  # a constant map
         count = height.size - beside.size
         second = int(np.count_nonzero(beside == (beside.max() if highest else beside.min())))
-        if count >= max(16, 1e-4 * height.size, 5 * second):
+        if count >= max(16, 1e-4 * height.size, 2 * second):
             found.append(Plateau(float(extreme), highest, count / height.size))
     return tuple(found)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import psi
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
@@ -120,9 +120,10 @@ def isotropic_spectrum(profile: ProfileSpectrum, source: str = "") -> MeasuredSp
 
     ``C(q) = −(1/π) ∫_q^∞ C1D′(k)/sqrt(k² − q²) dk`` (the inverse Abel transform, see `TabulatedSpectrum.from_profile`) of a
     smooth curve through C1D, times the measured over the smooth C1D: the transform of noise itself would be noise. The curve
-    is made of straight lines through neighbours within a quarter of a decade, or two or four times that if no surface has
-    such lines. Values keep the scatter of the lines; the error of the local exponent is added to it. Valid for isotropic
-    surfaces only: the lines cannot tell whether one is.
+    is made of straight lines through neighbours, as near as the noise allows. ``independent_modes`` contain the error of each
+    bin, through the curve that of the others, and what a curve half as close would change, which is the error of rounding
+    off a bend. Where C1D is flat, below a roll-off, lines hardly tell C: the bins up to the last one whose error is larger
+    than half of its value are left out. Valid for isotropic surfaces only: lines cannot tell whether one is.
 
     Parameters
     ----------
@@ -154,24 +155,79 @@ def isotropic_spectrum(profile: ProfileSpectrum, source: str = "") -> MeasuredSp
     if np.count_nonzero(used) < 4:
         raise InputError(f"{np.count_nonzero(used)} bins of the lines are reliable; expected at least 4")
     q, power, modes = profile.wavevector[used], profile.power[used], profile.independent_modes[used]
-    failed: InputError | None = None
-    for width in (NEIGHBOURHOOD, 2 * NEIGHBOURHOOD, 4 * NEIGHBOURHOOD):
-        curve = local_power_law(np.log(q), power, modes, width=width)
-        smooth = np.exp(curve.level)
-        try:
-            ratio = TabulatedSpectrum.from_profile(q, smooth).node_power / smooth
-        except InputError as error:
-            failed = error
+    log_q, log_c = np.log(q), np.log(power)
+    best: tuple[float, FloatArray, FloatArray] | None = None
+    for closeness in _CLOSENESS:
+        level = local_power_law(log_q, power, modes, width=closeness).level
+        first = _first_possible(log_q, level)
+        if first is None:
             continue
-        # of a power law ratio ∝ β B((β + 1)/2, 1/2)
-        beta = np.maximum(curve.exponent, 0.2)
-        change = 1 / beta + 0.5 * (psi((beta + 1) / 2) - psi(beta / 2 + 1))
-        return MeasuredSpectrum(
-            q,
-            power_spectral_density=power * ratio,
-            independent_modes=1 / (1 / modes + np.square(change) * curve.variance),
-            wavevector_min=profile.wavevector_min,
-            wavevector_max=profile.wavevector_max,
-            source=source,
+        here, wider = (
+            _transformed(log_q, log_c, modes, width, first) for width in (closeness, 2 * closeness)
         )
-    raise InputError(f"the spectrum of the lines is that of no isotropic surface: {failed}")
+        variance = _variance(log_q, log_c, modes, closeness, first) + np.square(wider - here)
+        variance[~np.isfinite(variance)] = np.inf
+        worth = float(np.sum(np.log(np.minimum(variance, 1.0))))
+        if best is None or worth < best[0]:
+            best = worth, here, variance
+    # below a bin that is not known nothing is
+    known = (
+        slice(0)
+        if best is None
+        else slice(int(np.max(np.flatnonzero(best[2] >= MOST_ERROR**2), initial=-1)) + 1, None)
+    )
+    if best is None or q[known].size < 4:
+        raise InputError(
+            "the spectrum of the lines is that of no isotropic surface, or tells nothing about it: their noise is too large"
+        )
+    return MeasuredSpectrum(
+        q[known],
+        power_spectral_density=np.exp(best[1][known]),
+        independent_modes=1 / best[2][known],
+        wavevector_min=max(profile.wavevector_min, float(q[known][0]) * (1 - 1e-9) if known.start else 0.0),
+        wavevector_max=profile.wavevector_max,
+        source=source,
+    )
+
+
+MOST_ERROR = 0.5
+"""Relative standard error of C(q) from lines up to which a bin is used."""
+
+_CLOSENESS = tuple(share * NEIGHBOURHOOD for share in (0.25, 0.5, 1.0, 2.0))
+
+
+def _first_possible(log_q: FloatArray, level: FloatArray) -> int | None:
+    """First bin from which on a smooth curve is that of lines of an isotropic surface; None if there is none."""
+    for first in range(log_q.size - 3):
+        try:
+            TabulatedSpectrum.from_profile(np.exp(log_q[first:]), np.exp(level[first:]))
+        except InputError:
+            continue
+        return first
+    return None
+
+
+def _transformed(
+    log_q: FloatArray, log_c: FloatArray, modes: FloatArray, width: float, first: int
+) -> FloatArray:
+    """ln C from ln C1D, see `isotropic_spectrum`; nan below the bin ``first``, and everywhere if there is no such surface."""
+    level = local_power_law(log_q, np.exp(log_c), modes, width=width).level
+    found = np.full(log_q.size, np.nan)
+    with suppress(InputError):
+        table = TabulatedSpectrum.from_profile(np.exp(log_q[first:]), np.exp(level[first:]))
+        found[first:] = log_c[first:] + np.log(table.node_power) - level[first:]
+    return found
+
+
+def _variance(
+    log_q: FloatArray, log_c: FloatArray, modes: FloatArray, width: float, first: int
+) -> FloatArray:
+    """Variance of each ln C from those of all ln C1D, to first order."""
+    step = 1e-3 / np.sqrt(modes)
+    here = _transformed(log_q, log_c, modes, width, first)
+    total = np.zeros(log_c.size)
+    for i in range(log_c.size):
+        moved = log_c.copy()
+        moved[i] += step[i]
+        total += np.square((_transformed(log_q, moved, modes, width, first) - here) / step[i]) / modes[i]
+    return total
