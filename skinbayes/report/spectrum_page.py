@@ -12,6 +12,7 @@ from skinbayes.plot.surface import plot_directions, plot_measured_spectrum, plot
 from skinbayes.report.drawings import Drawing
 from skinbayes.report.figures import drawn
 from skinbayes.report.rendering import rendered, write_whole
+from skinbayes.roughness import rms_height, rms_slope
 from skinbayes.topography import HeightMap, MeasuredSurface, SurfaceCollection
 
 REFERENCES = (
@@ -60,7 +61,9 @@ def surface_row(one: MeasuredSurface) -> tuple[str, ...]:
     low, high = (quantity(end, "1/m", 2) for end in (spectrum.wavevector_min, spectrum.wavevector_max))
     band = f"{low.removesuffix(' 1/m')} to {high}"
     if analysis is None:
-        return (one.name, "", "", "", "", "", "", "", "", band)
+        table = spectrum.tabulated()
+        height, slope = quantity(float(rms_height(table)), "m"), f"{float(rms_slope(table)):.3g}"
+        return (one.name, "", "", "", "", height, "", slope, "", band)
     surface, own, inside = analysis.surface, analysis.own, analysis.in_band
     if isinstance(surface, HeightMap):
         rows, columns = surface.height.shape

@@ -228,7 +228,7 @@ def _findings(one: SurfaceAnalysis) -> Iterator[str]:
     if one.spikes and not any("spike" in step for step in surface.steps):
         few = share <= MOST_SPIKES
         yield (
-            f"{one.spikes} pixels ({100 * share:.2g} %) stand out of their neighbours"
+            f"{'1 pixel' if one.spikes == 1 else f'{one.spikes} pixels'} ({100 * share:.2g} %) stand far out of the neighbours"
             + (
                 " like spikes and were kept."
                 if few

@@ -14,14 +14,14 @@ from skinbayes.topography.height_map import HeightMap, LineProfile
 Surface = TypeVar("Surface", bound=HeightMap | LineProfile)
 
 SPIKE = 12.0
-"""Distance of a spike from the median of its neighbours, in robust standard deviations of that distance over the map: 1e-32 of
-the pixels of a Gaussian surface, and still few of one with steps."""
+"""Distance of a spike from the median of its neighbours, in robust standard deviations of that distance over the map: none of a
+Gaussian surface, and few of one with steps."""
 
 MOST_SPIKES = 1e-3
 """Largest share of pixels that are taken for spikes; more of them are the surface, or a map that nothing can be done about."""
 
-_MAD = 1.4826
-"""Standard deviation of a normal variable over its median absolute deviation."""
+_NORMAL_95 = 1.96
+"""95th percentile of the absolute value of a normal variable, in standard deviations."""
 
 
 def invert_replica(surface: Surface) -> Surface:
@@ -53,7 +53,8 @@ def invert_replica(surface: Surface) -> Surface:
 def find_spikes(surface: HeightMap | LineProfile) -> BoolArray:
     """Pixels that stand out of the median of the 3 × 3 (of lines 5) pixels about them, shape of the heights.
 
-    More than `SPIKE` = 12 robust standard deviations (1.4826 times the median absolute deviation) of that distance over the map.
+    More than `SPIKE` = 12 robust standard deviations of that distance over the map: its 95th percentile over 1.96, which spikes
+    do not move. (The median would be too small: on a slope a pixel often is the median of its neighbours.)
 
     Parameters
     ----------
@@ -65,7 +66,7 @@ def find_spikes(surface: HeightMap | LineProfile) -> BoolArray:
 
     References
     ----------
-    Rousseeuw & Croux, J. Am. Stat. Assoc. 88 (1993) 1273, Sect. 1, doi 10.1080/01621459.1993.10476408.
+    Rousseeuw & Croux, J. Am. Stat. Assoc. 88 (1993) 1273, Sect. 1, doi 10.1080/01621459.1993.10476408, on robust scales.
 
     Examples
     --------
@@ -84,8 +85,8 @@ def find_spikes(surface: HeightMap | LineProfile) -> BoolArray:
         nearest = distance_transform_edt(~defined, return_distances=False, return_indices=True)
         filled = height[tuple(nearest)]
     away = np.abs(filled - median_filter(filled, size=3 if height.ndim == 2 else 5, mode="nearest"))
-    scale = _MAD * float(np.median(away[defined]))
-    if scale == 0.0:  # more than half of the pixels are flat: quantised heights, or nothing to compare with
+    scale = float(np.quantile(away[defined], 0.95)) / _NORMAL_95
+    if scale == 0.0:  # nearly all pixels are flat: nothing to compare with
         return np.zeros(height.shape, dtype=bool)
     return np.asarray((away > SPIKE * scale) & defined)
 
@@ -108,7 +109,7 @@ def remove_spikes(surface: Surface) -> Surface:
 
     References
     ----------
-    Rousseeuw & Croux, J. Am. Stat. Assoc. 88 (1993) 1273, Sect. 1, doi 10.1080/01621459.1993.10476408.
+    Rousseeuw & Croux, J. Am. Stat. Assoc. 88 (1993) 1273, Sect. 1, doi 10.1080/01621459.1993.10476408, on robust scales.
 
     Examples
     --------

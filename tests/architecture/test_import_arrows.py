@@ -49,8 +49,8 @@ MAY_KNOW: dict[str, set[str]] = {
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "topography", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "atomic", "units", "topography", "statistics", "diagnose", "files", "forward", "problem", "fit",
-               "comparison", "plot"},
+    "report": {*WORDS, "atomic", "units", "roughness", "topography", "statistics", "diagnose", "files", "forward", "problem",
+               "fit", "comparison", "plot"},
     "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "plot", "report",
             "version"},
     "__main__": {"cli"},
