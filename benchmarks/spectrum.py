@@ -63,6 +63,7 @@ def measure(program: str, pixels: int, rounds: int) -> dict[str, float]:
 
 
 def main() -> None:
+    """Both programs, each in a process of its own, and their ratio."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
