@@ -104,6 +104,8 @@ def collection_sentences(collection: SurfaceCollection) -> list[str]:
                 "No wavevector is covered by two surfaces, so that nothing tells how much places differ: the errors are those of "
                 "single surfaces and too small."
             )
+        elif merged.scatter < 0.005:
+            said.append("Where surfaces overlap they agree within what their finite size explains.")
         else:
             said.append(
                 f"Where surfaces overlap they differ by {100 * merged.scatter:.2g} % in C(q), beyond what their finite size "
