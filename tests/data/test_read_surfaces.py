@@ -180,9 +180,9 @@ def test_huge_files_are_refused_before_they_are_read(tmp_path: Path, monkeypatch
         archive.open("data.bin", "w") as member,
     ):
         for _ in range(3):
-            member.write(bytes(100_000_000))
-    monkeypatch.setattr("skinbayes.files.height_map.LARGEST_FILE", 200_000_000)
-    with pytest.raises(InputError, match="300,000,000 bytes when unpacked"):
+            member.write(bytes(10_000_000))
+    monkeypatch.setattr("skinbayes.files.height_map.LARGEST_FILE", 20_000_000)
+    with pytest.raises(InputError, match="30,000,000 bytes when unpacked"):
         read_surface(tmp_path / "bomb.x3p")
 
 
