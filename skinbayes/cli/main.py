@@ -25,6 +25,7 @@ from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
 from skinbayes.cli.sensitivity import sensitivity
+from skinbayes.cli.spectrum import spectrum
 from skinbayes.cli.template import template
 from skinbayes.errors import NO_SPACE, InputError, MachineError, RepairWarning
 from skinbayes.version import __version__
@@ -62,6 +63,7 @@ for _command in (
     new,
     template,
     digitised,
+    spectrum,
     check,
     prior,
     predict,

@@ -17,17 +17,22 @@ from skinbayes.units import describe_unit, format_quantity, split_header
 from skinbayes.vocabulary import Quantity, suggestions
 
 # Ranges far wider than any surface, from kilometres to below atoms; they keep powers of the values finite.
-_QUANTITIES = {
+QUANTITIES = {
     quantity.name: quantity
     for quantity in (
         Quantity("wavevector", "q", "1/m", "roughness wavevector, 2π/wavelength", 1e-3, 1e12, False),
         Quantity("power_spectrum_2d", "C", "m^4", "two-dimensional", 1e-80, 1e10, False),
         Quantity("power_spectrum_1d", "C1D", "m^3", "of line profiles", 1e-80, 1e10, False),
+        Quantity(
+            "independent_modes", "n", "1", "independent ordinates averaged in the row", 1e-3, 1e15, False
+        ),
     )
 }
 MAX_ROWS = {"power_spectrum_2d": 10_000, "power_spectrum_1d": 500}
 """Rows of a spectrum: the cost of a likelihood grows with the rows of a two-dimensional spectrum, that of the
 conversion from line profiles with their square."""
+MODES = "independent_modes"
+"""Column that a spectrum may have beside its values: they scatter as a mean of so many exponential variables does."""
 _EXPECTED = (
     "expected the columns 'wavevector [1/m]' and 'power_spectrum_2d [m^4]' or 'power_spectrum_1d [m^3]'"
 )
@@ -44,7 +49,8 @@ def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> Tabu
     The CSV has a column ``wavevector`` (``[1/m]`` or a unit that converts to it, 2π over the wavelength) and
     either ``power_spectrum_2d [m^4]``, of an area, or ``power_spectrum_1d [m^3]``, of line profiles, which is converted. The
     numbers cannot tell in which of the `CONVENTIONS` they are: comments above the header say it, ``# convention: paper``, or
-    ``stated`` does. A measured rms height, slope or area, ``# rms_height_measured: 22 um``, must be that of the spectrum.
+    ``stated`` does. A measured rms height, slope or area, ``# rms_height_measured: 22 um``, must be that of the spectrum. A
+    column ``independent_modes [1]`` says how well each value is known, and is not used here.
 
     Parameters
     ----------
@@ -68,14 +74,14 @@ def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> Tabu
     table = read_table(path, max_rows=max(MAX_ROWS.values()))
     named = _columns(table)
     problems = Problems(path)
-    (power_name,) = named.keys() - {"wavevector"}
+    (power_name,) = named.keys() - {"wavevector", MODES}
     if len(table.rows) > MAX_ROWS[power_name]:
         raise InputError(
             f"{path}: {len(table.rows)} rows of {power_name}; expected at most {MAX_ROWS[power_name]}: average "
             "the spectrum over bands of wavevectors"
         )
     wavevector, power = (
-        read_quantity(table, named[name][0], _QUANTITIES[name], named[name][1], problems)
+        read_quantity(table, named[name][0], QUANTITIES[name], named[name][1], problems)
         for name in ("wavevector", power_name)
     )
     _check_increasing(table, *named["wavevector"], wavevector, problems)
@@ -157,14 +163,14 @@ def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
     """Position and unit of each column; InputError for anything but one wavevector and one spectrum."""
     where = f"{table.path}, line {table.header_line}"
     named: dict[str, tuple[int, str]] = {}
-    known = list(_QUANTITIES)
+    known = list(QUANTITIES)
     names = [split_header(header)[0] for header in table.header]
     if not any(name in known or suggestions(name, known) for name in names):
         # nothing of a file that is no spectrum is quoted: a model may name any file there is
         raise InputError(f"{where}: no column of a spectrum; {_EXPECTED}")
     for position, header in enumerate(table.header):
         name, unit = split_header(header)
-        quantity = _QUANTITIES.get(name)
+        quantity = QUANTITIES.get(name)
         if quantity is None:
             guess = suggestions(name, known)
             raise InputError(
@@ -175,7 +181,7 @@ def _columns(table: CsvTable) -> dict[str, tuple[int, str]]:
         if not unit:
             raise InputError(f"{where}: column '{name}' has no unit; expected {describe_unit(quantity.unit)}")
         named[name] = position, unit
-    if "wavevector" not in named or len(named) != 2:
+    if "wavevector" not in named or len(named.keys() - {MODES}) != 2:
         raise InputError(f"{where}: found the columns {', '.join(named)}; {_EXPECTED}")
     return named
 

@@ -42,11 +42,16 @@ def pictures(fit: Fit) -> dict[str, dict[str, Any]]:
 
 def picture(fit: Fit | Comparison, drawing: Drawing) -> dict[str, Any]:
     """Texts of a drawing and its images for screens and for phones."""
-    wide = drawing.draw(fit, width=None)
+    return drawn(fit, drawing, "" if fit.converged else "NOT CONVERGED. ")
+
+
+def drawn(what: Any, drawing: Drawing, warning: str = "") -> dict[str, Any]:
+    """The same of anything that a drawing can be made of; ``warning`` stands before its alternative text."""
+    wide = drawing.draw(what, width=None)
     return vars(drawing) | {
-        "alternative": drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}",
+        "alternative": f"{warning}{drawing.alternative}",
         "wide": _image(wide),
-        "narrow": _image(drawing.draw(fit, width=NARROW)),
+        "narrow": _image(drawing.draw(what, width=NARROW)),
         "large": float(wide.get_size_inches()[0]) > LARGE,  # may be wider than the text
     }
 

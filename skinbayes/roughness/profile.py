@@ -1,4 +1,4 @@
-"""From the spectrum of straight profiles to that of the surface: the inverse Abel transform."""
+"""Between the spectrum of straight profiles and that of the surface: the Abel transform and its inverse."""
 
 from __future__ import annotations
 
@@ -66,3 +66,33 @@ def _tail(q: float, last: float, last_power: float, b: float) -> float:
     half = (b + 1) / 2
     incomplete = betainc(half, 0.5, (q / last) ** 2) * beta(half, 0.5)
     return float(b * last_power * (last / q) ** b / q * incomplete / 2)
+
+
+def profile_from_isotropic(
+    nodes: FloatArray, exponent: FloatArray, power: FloatArray, q: FloatArray
+) -> FloatArray:
+    """C1D(q) of an isotropic spectrum that is a power law between nodes and zero outside of them.
+
+    ``2 ∫_q^∞ k C(k)/sqrt(k² − q²) dk``, with k = q cosh t on pieces of at most half a unit of ln k.
+
+    Parameters
+    ----------
+    nodes : 1/m, shape ``(K,)``
+    exponent : dln C/dln q of each cell, shape ``(K − 1,)``
+    power : C at the first node of each cell, m^4, shape ``(K − 1,)``
+    q : wavevectors of profiles, 1/m, shape ``(n,)``, > 0
+
+    Returns
+    -------
+    profile_power : m^3, shape ``(n,)``
+    """
+    pieces = np.maximum(np.ceil(np.diff(np.log(nodes)) / _WIDEST), 1).astype(int)
+    ends = [np.geomspace(a, b, n + 1)[:-1] for a, b, n in zip(nodes, nodes[1:], pieces, strict=False)]
+    edges, cell = np.append(np.concatenate(ends), nodes[-1]), np.repeat(np.arange(pieces.size), pieces)
+    found = np.empty(q.shape)
+    for i, one in enumerate(q):
+        t = np.arccosh(np.maximum(edges / one, 1.0))
+        k = one * np.cosh(t[:-1, None] + np.diff(t)[:, None] * _NODES)
+        values = power[cell][:, None] * (k / nodes[cell][:, None]) ** exponent[cell][:, None]
+        found[i] = 2 * np.sum(k * values * _WEIGHTS * np.diff(t)[:, None])
+    return found

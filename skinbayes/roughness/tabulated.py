@@ -12,7 +12,7 @@ from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.roughness._fields import Floats, as_field, with_axes
 from skinbayes.roughness._product_rule import ProductRule
-from skinbayes.roughness.profile import isotropic_from_profile
+from skinbayes.roughness.profile import isotropic_from_profile, profile_from_isotropic
 from skinbayes.roughness.spectrum import SlopeQuadrature
 
 
@@ -134,6 +134,34 @@ class TabulatedSpectrum:
         """
         q = np.asarray(wavevector, dtype=np.float64)
         return (with_axes(self._factor, min(q.ndim, 1)) * self._unscaled(q))[()]
+
+    def profile_power(self, wavevector: ArrayLike) -> FloatArray:
+        """One-dimensional spectrum of straight profiles of the surface, what `from_profile` takes.
+
+        ``C1D(q) = 2 ∫_q^∞ k C(k)/sqrt(k² − q²) dk`` over the table, where ``⟨h²⟩ = 2 ∫_0^∞ C1D dq``. Profiles have
+        waves longer than any of the surface, which they cross at an angle: below the first node C1D is finite.
+
+        Parameters
+        ----------
+        wavevector : of profiles, 1/m, shape ``(n,)`` or a scalar, > 0
+
+        Returns
+        -------
+        profile_power : C1D, m^3, batch shape of ``scale`` plus that of ``wavevector``; zero above the table
+
+        References
+        ----------
+        Jacobs, Junge & Pastewka, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, doi 10.1088/2051-672X/aa51f8.
+
+        Examples
+        --------
+        >>> spectrum = TabulatedSpectrum([1e3, 1e8], [1e-12, 1e-32])
+        >>> print(f"{spectrum.profile_power(1e5) / (np.pi / 2 * 1e-20 * 1e5):.5f}")  # C ∝ q^−4: C1D = (π/2) q C
+        1.00000
+        """
+        q = np.asarray(wavevector, dtype=np.float64)
+        found = profile_from_isotropic(self.wavevector, self._exponent, self.node_power[:-1], q.reshape(-1))
+        return (with_axes(self._factor, q.ndim) * found.reshape(q.shape))[()]
 
     def _unscaled(self, q: FloatArray) -> FloatArray:
         cell = np.clip(np.searchsorted(self.wavevector, q, side="right") - 1, 0, self.wavevector.size - 2)

@@ -11,7 +11,7 @@ from source_tree import HEAVY, ROOT, Import, all_imports, floor_of, imports_of, 
 
 WORDS = {"errors", "arrays", "constants", "defaults", "phrases", "vocabulary"}
 FILES = {"atomic", "sealed"}
-PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
+PHYSICS = {"roughness", "topography", "contact", "friction", "wetting", "lubrication"}
 STATISTICS = {"statistics", "sampling", "diagnose"}
 
 MAY_KNOW: dict[str, set[str]] = {
@@ -32,6 +32,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "emulation": {"errors", "arrays"},
     # physics
     "roughness": {"errors", "arrays", "constants"},
+    "topography": {"errors", "arrays", "constants", "roughness"},
     "contact": {"errors", "arrays", "constants", "roughness"},
     "friction": {"errors", "arrays", "constants"},
     "wetting": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
@@ -41,15 +42,17 @@ MAY_KNOW: dict[str, set[str]] = {
     "sampling": {"errors", "arrays", "defaults", *FILES, "statistics"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
-    "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
+    "files": {*WORDS, "plugins", "units", "roughness", "topography", "statistics"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
     "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "statistics", "diagnose", "files", "forward", "version"},
     "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
-    "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
-    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
+    "plot": {*WORDS, "units", "topography", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
+    "report": {*WORDS, "atomic", "units", "roughness", "topography", "statistics", "diagnose", "files", "forward", "problem",
+               "fit", "comparison", "plot"},
+    "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "plot", "report",
+            "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
@@ -61,6 +64,7 @@ FIT_METHODS_MAY_DRAW = "plot"
 """``Fit.plot_*`` reach up to the figures, lazily: a convenience of the result, not a dependency of the module."""
 
 HOMES: dict[str, set[str]] = {
+    "SurfaceTopography": {"files"},
     "arviz": {"fit"},
     "click": {"cli"},
     "corner": {"plot"},
@@ -84,6 +88,7 @@ HOMES: dict[str, set[str]] = {
     },
     "pandas": {"files", "fit", "plot", "report"},
     "pint": {"units"},
+    "PIL": {"files"},
     "platformdirs": {"emulation"},
     "pydantic": {"files", "fit"},
     "rich": {"cli"},
