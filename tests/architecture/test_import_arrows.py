@@ -11,7 +11,7 @@ from source_tree import HEAVY, ROOT, Import, all_imports, floor_of, imports_of, 
 
 WORDS = {"errors", "arrays", "constants", "defaults", "phrases", "vocabulary"}
 FILES = {"atomic", "sealed"}
-PHYSICS = {"roughness", "contact", "friction", "wetting", "lubrication"}
+PHYSICS = {"roughness", "topography", "contact", "friction", "wetting", "lubrication"}
 STATISTICS = {"statistics", "sampling", "diagnose"}
 
 MAY_KNOW: dict[str, set[str]] = {
@@ -32,6 +32,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "emulation": {"errors", "arrays"},
     # physics
     "roughness": {"errors", "arrays", "constants"},
+    "topography": {"errors", "arrays", "constants", "roughness"},
     "contact": {"errors", "arrays", "constants", "roughness"},
     "friction": {"errors", "arrays", "constants"},
     "wetting": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
@@ -41,7 +42,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "sampling": {"errors", "arrays", "defaults", *FILES, "statistics"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
-    "files": {*WORDS, "plugins", "units", "roughness", "statistics"},
+    "files": {*WORDS, "plugins", "units", "roughness", "topography", "statistics"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
     "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "statistics", "diagnose", "files", "forward", "version"},
     "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},

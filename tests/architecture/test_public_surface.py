@@ -17,7 +17,7 @@ from source_tree import PACKAGE, Definition, public_definitions
 
 import skinbayes
 
-DOCUMENTED = ("roughness", "contact", "wetting", "lubrication", "friction", "statistics", "sampling", "diagnose",
+DOCUMENTED = ("roughness", "topography", "contact", "wetting", "lubrication", "friction", "statistics", "sampling", "diagnose",
               "files", "forward", "problem", "fit", "comparison", "plot", "report", "units", "vocabulary", "errors",
               "arrays")  # fmt: skip
 
@@ -39,7 +39,7 @@ def here(*packages: str) -> list[str]:
 
 def physics_callables() -> Iterator[tuple[str, Any]]:
     """Functions and classes that the physics packages export."""
-    for package in here("roughness", "contact", "wetting", "lubrication"):
+    for package in here("roughness", "topography", "contact", "wetting", "lubrication"):
         module = import_module(f"skinbayes.{package}")
         for name in module.__all__:
             if callable(found := getattr(module, name)):
@@ -91,6 +91,7 @@ def test_top_level_names() -> None:
     "package",
     here(
         "roughness",
+        "topography",
         "contact",
         "wetting",
         "lubrication",
