@@ -72,6 +72,7 @@ def measure_ridges(surface: HeightMap) -> MeasuredRidges:
     Returns
     -------
     MeasuredRidges
+        Lengths in m, angle in rad, with standard errors.
 
     Raises
     ------
@@ -80,8 +81,8 @@ def measure_ridges(surface: HeightMap) -> MeasuredRidges:
 
     Notes
     -----
-    Ridges that bend over the map are averaged to lower and wider ones; take a part on which they are straight. Tilt and curvature
-    have to be taken off before.
+    For maps of skin or its replicas, such as those of Sect. 2 of the paper. Ridges that bend over the map are averaged to
+    lower and wider ones; take a part on which they are straight. Tilt and curvature have to be taken off before.
 
     References
     ----------
@@ -102,8 +103,8 @@ def measure_ridges(surface: HeightMap) -> MeasuredRidges:
     height = np.asarray(surface.height, dtype=float)
     known = np.isfinite(height)
     height = np.where(known, height - height[known].mean(), 0.0)
-    x = np.arange(height.shape[1]) * surface.pixel_size_x
-    y = np.arange(height.shape[0])[:, None] * surface.pixel_size_y
+    x: FloatArray = np.asarray(np.arange(height.shape[1]) * surface.pixel_size_x, dtype=np.float64)
+    y: FloatArray = np.asarray(np.arange(height.shape[0])[:, None] * surface.pixel_size_y, dtype=np.float64)
     qx, qy = _strongest(surface, height)
     qx, qy = _refined(x, y, height, known, (qx, qy))
     q = float(np.hypot(qx, qy))
@@ -112,12 +113,12 @@ def measure_ridges(surface: HeightMap) -> MeasuredRidges:
     explained = 1 - float(np.mean(np.square(height[known] - fit)) / np.mean(np.square(height[known])))
     if explained < LEAST_EXPLAINED:
         raise InputError(
-            f"straight ridges explain {explained:.0%} of the variance of heights; expected at least {LEAST_EXPLAINED:.0%}: a levelled "
-            "map with parallel ridges, or a part of one on which they are straight"
+            f"straight ridges explain {explained:.0%} of the variance of heights; expected at least {LEAST_EXPLAINED:.0%}: a "
+            "levelled map with parallel ridges, or a part of one on which they are straight"
         )
     spacing = 2 * np.pi / q
     tall, share = _shape(phase[known], height[known])
-    pieces = np.array(_of_pieces(x, y, height, known, (qx, qy)))
+    pieces: FloatArray = np.array(_of_pieces(x, y, height, known, (qx, qy)), dtype=np.float64)
     errors = pieces.std(axis=0, ddof=1) / np.sqrt(len(pieces)) if len(pieces) > 1 else np.full(3, np.nan)
     angle = float(np.arctan2(qx, -qy))
     angle = (angle + np.pi / 2) % np.pi - np.pi / 2

@@ -65,7 +65,7 @@ def random_surface(
     spectrum : C in m^4, scalar parameters
     shape : rows and columns of the map, ``(M, N)``
     pixel_size : m, the same along both axes
-    seed : non-negative integer; one seed gives one surface
+    seed : non-negative integer, dimensionless; one seed gives one surface
     amplitudes : ``"gaussian"``, as those of a random Gaussian surface: heights and moments scatter from seed to seed and
         periodogram ordinates are exponentially distributed; or ``"exact"``, each wave has its mean amplitude, so that rms height
         and slope are the same for all seeds
@@ -106,8 +106,8 @@ def random_surface(
     if isinstance(spectrum, SelfAffineSpectrum):
         validate_spectrum(spectrum)
     rows, columns = shape
-    qx = 2 * np.pi * np.fft.rfftfreq(columns, pixel_size)
-    qy = 2 * np.pi * np.fft.fftfreq(rows, pixel_size)[:, None]
+    qx = np.asarray(2 * np.pi * np.fft.rfftfreq(columns, pixel_size), dtype=np.float64)
+    qy = np.asarray(2 * np.pi * np.fft.fftfreq(rows, pixel_size)[:, None], dtype=np.float64)
     area = rows * columns * pixel_size**2
     along, across, stretch = _stretched(qx, qy, anisotropy)
     felt = np.hypot(along * stretch, across / stretch)
@@ -116,9 +116,9 @@ def random_surface(
     power = np.where(resolved & (felt > 0), spectrum.power(felt), 0.0)
     if not power.any():
         raise InputError(
-            f"no wave of the spectrum, {float(spectrum.wavevector_min):g} to {float(spectrum.wavevector_max):g} 1/m, fits on a map "
-            f"with waves from {2 * np.pi / (max(shape) * pixel_size):g} to {np.pi / pixel_size:g} 1/m; expected another pixel_size "
-            "or shape"
+            f"no wave of the spectrum, {float(spectrum.wavevector_min):g} to {float(spectrum.wavevector_max):g} 1/m, fits on a "
+            f"map with waves from {2 * np.pi / (max(shape) * pixel_size):g} to {np.pi / pixel_size:g} 1/m; expected another "
+            "pixel_size or shape"
         )
     # the transform of white noise has the symmetry of real heights, also at its self-conjugate places
     wave = np.fft.rfft2(np.random.default_rng(seed).standard_normal(shape))
@@ -127,7 +127,9 @@ def random_surface(
     height = np.fft.irfft2(wave * np.sqrt(power * (rows * columns) * (2 * np.pi) ** 2 / area), s=shape)
     step = f"synthetic: random phases, {amplitudes} amplitudes, seed {seed}"
     if ridges is None:
-        return HeightMap(height, pixel_size_x=pixel_size, pixel_size_y=pixel_size, periodic=True, steps=(step,))
+        return HeightMap(
+            height, pixel_size_x=pixel_size, pixel_size_y=pixel_size, periodic=True, steps=(step,)
+        )
     profile, fits = _ridged(shape, pixel_size, ridges)
     return HeightMap(
         height + profile,
@@ -182,8 +184,8 @@ def _check(
         return
     if not 0 < ridges.width < ridges.spacing < np.inf:
         raise InputError(
-            f"ridges have a width of {ridges.width:g} m and a spacing of {ridges.spacing:g} m, but the width must be > 0 m and less "
-            "than the spacing."
+            f"ridges have a width of {ridges.width:g} m and a spacing of {ridges.spacing:g} m, but the width must be > 0 m and "
+            "less than the spacing."
         )
     if not (np.isfinite(ridges.height) and ridges.height > 0):
         raise InputError(f"ridges.height is {ridges.height:g} m, but must be a finite number > 0 m.")

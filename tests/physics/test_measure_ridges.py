@@ -31,7 +31,9 @@ def test_spacing_height_and_width_come_back(angle: float, width: float) -> None:
 
 
 def test_undefined_pixels_are_left_out() -> None:
-    surface = random_surface(ROUGH, shape=(200, 200), pixel_size=18e-6, seed=2, ridges=Ridges(0.47e-3, 60e-6, 0.25e-3))
+    surface = random_surface(
+        ROUGH, shape=(200, 200), pixel_size=18e-6, seed=2, ridges=Ridges(0.47e-3, 60e-6, 0.25e-3)
+    )
     holes = surface.height.copy()
     holes[np.random.default_rng(1).random(holes.shape) < 0.1] = np.nan
     whole = measure_ridges(surface)
@@ -48,4 +50,6 @@ def test_roughness_alone_has_no_ridges() -> None:
 
 def test_a_map_of_three_ridges_is_too_small() -> None:
     with pytest.raises(InputError, match="too small for 4 ridges"):
-        measure_ridges(HeightMap(np.random.default_rng(1).normal(size=(16, 16)), pixel_size_x=1e-5, pixel_size_y=1e-5))
+        measure_ridges(
+            HeightMap(np.random.default_rng(1).normal(size=(16, 16)), pixel_size_x=1e-5, pixel_size_y=1e-5)
+        )
