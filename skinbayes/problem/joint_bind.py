@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset
