@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
-           "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "load_dataset", "load_fit",
-           "load_joint_fit", "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
+           "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "fit_spectrum", "load_dataset",
+           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
            "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
-    from skinbayes.fit import Fit, JointFit, load_fit, load_joint_fit, sample
+    from skinbayes.fit import Fit, JointFit, fit_spectrum, load_fit, load_joint_fit, sample
     from skinbayes.forward import ForwardModel, emulated, register_forward_model
     from skinbayes.problem import (
         JointProblem,
@@ -53,6 +53,7 @@ _HOME = {
     "build_problem": "skinbayes.problem",
     "compare": "skinbayes.comparison",
     "emulated": "skinbayes.forward",
+    "fit_spectrum": "skinbayes.fit",
     "load_dataset": "skinbayes.files.dataset",
     "load_fit": "skinbayes.fit",
     "load_problem": "skinbayes.problem",

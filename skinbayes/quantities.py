@@ -66,8 +66,52 @@ ALL = (
     Quantity("wavevector_rolloff", "q_r", "1/m", "end of the plateau of the power spectrum"),
     Quantity("wavevector_max", "q1", "1/m", "largest roughness wavevector"),
     _closed("rms_slope", "s", "1", "root-mean-square slope"),
+    Quantity(
+        "surface_deviate",
+        "z",
+        "1",
+        "normal score of a roughness parameter among the draws of a surface",
+        lower=-inf,
+    ),
+    Quantity("total_area_ratio", "A_tot/A0", "1", "true area over nominal area", 1.0, lower_open=False),
+    Quantity(
+        "power_spectral_density", "C", "m^4", "two-dimensional power spectrum of heights, ⟨h²⟩ = 2π∫qC dq"
+    ),
+    Quantity("spectrum_knot_first", "q_k1", "1/m", "first knot of a free-form spectrum"),
+    Quantity("spectrum_knot_last", "q_k6", "1/m", "last knot of a free-form spectrum"),
+    *(
+        Quantity(
+            f"spectrum_factor_{i}",
+            f"c{i}",
+            "1",
+            f"factor on the spectrum at knot {i}, relative to the others",
+        )
+        for i in range(1, 7)
+    ),
+    # another rough surface
+    Quantity("counterface_rms_height", "h_c", "m", "root-mean-square roughness of the counterface"),
+    Quantity(
+        "counterface_hurst_exponent",
+        "H_c",
+        "1",
+        "Hurst exponent of the counterface",
+        0.0,
+        1.0,
+        upper_open=True,
+    ),
+    Quantity("counterface_wavevector_min", "q0_c", "1/m", "smallest roughness wavevector of the counterface"),
+    Quantity(
+        "counterface_wavevector_rolloff", "q_r,c", "1/m", "end of the plateau of the counterface's spectrum"
+    ),
+    Quantity("counterface_wavevector_max", "q1_c", "1/m", "largest roughness wavevector of the counterface"),
+    Quantity("young_modulus_counterface", "E_c", "Pa", "Young's modulus of the counterface"),
+    Quantity("poisson_ratio_counterface", "ν_c", "1", "Poisson ratio of the counterface", -1.0, 0.5),
+    # ridges of finger pads
+    Quantity("ridge_spacing", "λ_r", "m", "distance from ridge to ridge of a finger pad"),
+    Quantity("ridge_width", "w_r", "m", "width of the tops of the ridges"),
+    Quantity("ridge_height", "h_r", "m", "height of the ridges above the valleys"),
     # contact
-    Quantity("wavevector", "q", "1/m", "largest wavevector included"),
+    Quantity("wavevector", "q", "1/m", "roughness wavevector; in a contact the largest one included"),
     Quantity("magnification", "ζ", "1", "q/q0", lower=1.0, upper=inf, lower_open=False),
     Quantity("nominal_pressure", "p0", "Pa", "load over nominal contact area"),
     Quantity("nominal_contact_area", "A0", "m^2", "nominal (projected) contact area"),

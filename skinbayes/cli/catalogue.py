@@ -118,10 +118,11 @@ def _told(problem: BoundModel) -> dict[str, Any]:
     from skinbayes.problem.surface_numbers import surface_numbers
 
     spec = problem.spec
+    file = spec.surface_file or spec.surface_posterior
     return {
         "forward": spec.forward, "options": dict(problem.forward.chosen), "dataset": spec.dataset,
         "rows": spec.rows, "observables": spec.observables,
-        "noise": spec.noise, "surface": spec.surface_name or (spec.surface_file and str(spec.surface_file)),
+        "noise": spec.noise, "surface": spec.surface_name or (str(file) if file else None),
         "surface_numbers": surface_numbers(problem, problem.prior_medians()),
     }  # fmt: skip
 

@@ -4,6 +4,7 @@ from skinbayes.contact.area import persson_contact_area, relative_contact_area
 from skinbayes.contact.ball_on_skin import modulus_under_ball
 from skinbayes.contact.constant_loss import ConstantLossMaterial
 from skinbayes.contact.correction import AREA_CORRECTION, corrected_twice_stress_variance
+from skinbayes.contact.counterface import SolidPair
 from skinbayes.contact.elastoplastic import ContactArea, elastoplastic_contact_area, total_contact_area
 from skinbayes.contact.elliptic_contact import (
     EllipseFactors,
@@ -73,6 +74,7 @@ __all__ = [
     "LayeredLine",
     "LayeredSkin",
     "LayeredSphere",
+    "SolidPair",
     "StackedSkin",
     "ViscoelasticLine",
     "ViscoelasticMaterial",

@@ -36,6 +36,7 @@ class JointSpec:
     parameters : inputs of the forward models: shared by all experiments that take them, or one for each experiment
     surface_name, surface_file : named surface or tabulated spectrum
     surface_stated : what is said about the spectrum
+    surface_posterior : run, or CSV, whose draws say what is known of the surface
     """
 
     name: str
@@ -48,6 +49,7 @@ class JointSpec:
     surface_name: str | None = None
     surface_file: Path | None = None
     surface_stated: StatedSurface | None = None
+    surface_posterior: Path | None = None
 
     @property
     def shared(self) -> frozenset[str]:
@@ -127,6 +129,9 @@ def _read(block: JointBlock, path: Path, text: str, where: Places) -> JointSpec:
         if surface is None or surface.file is None
         else (path.parent / surface.file).resolve(),
         surface_stated=stated_about(surface, where),
+        surface_posterior=None
+        if surface is None or surface.posterior is None
+        else (path.parent / surface.posterior).resolve(),
     )
 
 

@@ -47,6 +47,7 @@ class ModelSpec:
     missing : ``"drop"`` if rows without a value in a column that is used are left out
     surface_name, surface_file : named surface or tabulated spectrum
     surface_stated : what is said about the spectrum
+    surface_posterior : run, or CSV, whose draws say what is known of the surface
     parameters : parameters of the forward model, fixed and free
     noise : observable to the name of its noise family
     noise_parameters : parameters of noise and discrepancy
@@ -76,6 +77,7 @@ class ModelSpec:
     surface_name: str | None = None
     surface_file: Path | None = None
     surface_stated: StatedSurface | None = None
+    surface_posterior: Path | None = None
     noise: dict[str, str] = field(default_factory=dict)
     noise_parameters: tuple[ParameterSpec, ...] = ()
     groups: tuple[ParameterSpec, ...] = ()
@@ -201,6 +203,9 @@ def read_block(block: ModelBlock, path: Path, text: str, where: Callable[..., st
         if surface is None or surface.file is None
         else (path.parent / surface.file).resolve(),
         surface_stated=stated_about(surface, where),
+        surface_posterior=None
+        if surface is None or surface.posterior is None
+        else (path.parent / surface.posterior).resolve(),
         noise=families,
         noise_parameters=noise_parameters,
         groups=read_groups(block.groups, families, where),

@@ -57,16 +57,19 @@ class DataBlock(_Strict):
 
 
 class SurfaceBlock(_Strict):
-    """``[surface]``: a named surface, or the user's own tabulated power spectrum."""
+    """``[surface]``: a named surface, the user's own tabulated power spectrum, or the posterior of a fit of one."""
 
     name: str | None = None
     file: str | None = None
+    posterior: str | None = None
     convention: str | None = None
     rms_height_measured: Any = None
     rms_slope_measured: Any = None
     total_area_ratio_measured: Any = None
 
-    _source = _either(name=" (a named surface)", file=" (the path of a spectrum CSV)")
+    _source = _either(
+        name=" (a named surface)", file=" (the path of a spectrum CSV)", posterior=" (a run of a spectrum)"
+    )
 
 
 class RheologyBlock(_Strict):

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 from skinbayes.fit.result import FitResult
 
 if TYPE_CHECKING:
+    from skinbayes.files.surface_draws import SurfaceDraws
     from skinbayes.fit.prior_sensitivity import PriorSensitivity
+    from skinbayes.fit.surface_variance import SurfaceVariance
     from skinbayes.statistics.agreement import Agreement
     from skinbayes.statistics.repeats import LackOfFit
     from skinbayes.statistics.trends import Trend
@@ -105,3 +107,54 @@ class AskedFit(FitResult):
         if refit not in self._sensitivities:
             self._sensitivities[refit] = prior_sensitivity(self, refit, progress)
         return self._sensitivities[refit]
+
+    def surface(self) -> SurfaceDraws:
+        """What this fit knows of the roughness, for another problem: ``build_problem(…, surface=fit.surface())``.
+
+        Returns
+        -------
+        SurfaceDraws
+            Draws of the roughness parameters that are free, and the values of the others, SI.
+
+        Raises
+        ------
+        InputError
+            The fit has no self-affine surface with free parameters, or its model is not at hand any more.
+
+        Examples
+        --------
+        >>> list(fit.surface().draws), fit.surface().fixed["hurst_exponent"]
+        (['rms_height'], 0.78)
+        """
+        from skinbayes.fit.surface_variance import fitted_surface
+
+        return fitted_surface(self)
+
+    def surface_variance(self, quantity: str | None = None) -> SurfaceVariance:
+        """Split the posterior variance of ln of a parameter into surface, other parameters of the theory, and data.
+
+        ``Var E[ln y | surface] / Var ln y`` and so on, from regressions on the draws; where the posterior makes groups depend on
+        each other each gets the mean of what it adds first and last. See ``skinbayes.statistics.variance_shares``.
+
+        Parameters
+        ----------
+        quantity : label of a free parameter; the first frictional shear stress if omitted
+
+        Returns
+        -------
+        SurfaceVariance
+            The three shares with their standard errors, and ``sentence()``.
+
+        Raises
+        ------
+        InputError
+            No roughness parameter is free beside it, or the model of the fit is not at hand any more.
+
+        Examples
+        --------
+        >>> print(f"{fit.surface_variance('young_modulus_layer').data:.1f}")  # draws of the prior: nothing depends on anything
+        1.0
+        """
+        from skinbayes.fit.surface_variance import surface_variance
+
+        return surface_variance(self, quantity)

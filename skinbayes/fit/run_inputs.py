@@ -145,6 +145,11 @@ def write_inputs(directory: Path, problem: Problem | JointProblem, engine: str) 
             copies["spectrum.csv"] = file
         else:
             texts["spectrum.csv"] = spectrum_text(spectrum)
+    prior = next((one.surface_prior for one in parts if one.surface_prior is not None), None)
+    if prior is not None:
+        note["surface"] = "surface.csv"
+        texts["surface.csv"] = prior.draws.text()
+        settings.pop("surface", None)
     copies |= {f"{BASELINE_MODELS}/{path.name}": path for path in own_baseline_models(problem)}
     # read first: the user may point at the copies of an earlier run in this very directory
     contents = {name: source.read_bytes() for name, source in copies.items()}

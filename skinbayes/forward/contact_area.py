@@ -6,22 +6,19 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.contact import effective_modulus, surface_response, twice_stress_variance
-from skinbayes.forward.base import ROUGHNESS_INPUTS, ForwardModel, Inputs, Profile, Tables
+from skinbayes.forward.base import ForwardModel, Inputs, Profile, Tables
 from skinbayes.forward.contact_inputs import (
-    LAYERS_GO_WITH,
+    ENTERS_VARIANCE,
+    FURTHER,
     PRESSURE_ALTERNATIVES,
     PRESSURE_AND_SLOPE,
-    SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
-    SOLID_INPUTS,
     contact_area_of,
     skin_of,
     spectrum_of,
     validate_contact,
 )
 from skinbayes.roughness import PowerSpectrum
-
-_ENTERS_VARIANCE = (*SOLID_INPUTS, *ROUGHNESS_INPUTS)
 
 
 def wavevector_of(inputs: Inputs, spectrum: PowerSpectrum) -> FloatArray:
@@ -35,10 +32,10 @@ def wavevector_of(inputs: Inputs, spectrum: PowerSpectrum) -> FloatArray:
 
 def _twice_stress_variance(inputs: Inputs, tables: Tables, wavevector: FloatArray) -> FloatArray:
     """Twice the stress variance at one wavevector a row, shape ``(B, N)``."""
-    if all(np.shape(inputs[name])[-1:] in ((), (1,)) for name in _ENTERS_VARIANCE if name in inputs):
+    if all(np.shape(inputs[name])[-1:] in ((), (1,)) for name in ENTERS_VARIANCE if name in inputs):
         # nothing but the wavevector differs from row to row: one cumulative integral serves all rows
         batch = {
-            name: np.atleast_2d(value)[:, 0] for name, value in inputs.items() if name in _ENTERS_VARIANCE
+            name: np.atleast_2d(value)[:, 0] for name, value in inputs.items() if name in ENTERS_VARIANCE
         }
         return twice_stress_variance(
             spectrum_of(batch, tables), skin_of({**inputs, **batch}), wavevector=wavevector
@@ -97,9 +94,7 @@ MODEL = ForwardModel(
         "effective_modulus",
     ),
     required=(SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES),
-    goes_with=LAYERS_GO_WITH,
-    optional=SKIN_DEFAULTS,
-    accepted=("wavevector", "magnification"),
+    **{**FURTHER, "accepted": (*FURTHER["accepted"], "wavevector", "magnification")},
     exclusive=((("wavevector",), ("magnification",)),),
     evaluate=_evaluate,
     validate=validate_contact,

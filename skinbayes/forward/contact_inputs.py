@@ -10,14 +10,17 @@ from skinbayes.arrays import FloatArray
 from skinbayes.contact import (
     AREA_CORRECTION,
     ContactArea,
+    ElasticSolid,
     HomogeneousSolid,
     LayeredSkin,
+    SolidPair,
     StackedSkin,
     elastoplastic_contact_area,
     modulus_under_ball,
     twice_stress_variance,
     validate_solid,
 )
+from skinbayes.contact.counterface import in_series
 from skinbayes.contact.hertz import mean_pressure
 from skinbayes.contact.variance import integrated
 from skinbayes.errors import InputError
@@ -26,6 +29,7 @@ from skinbayes.forward.deduplicated_rows import on_distinct
 from skinbayes.roughness import (
     PowerSpectrum,
     SelfAffineSpectrum,
+    SummedSpectrum,
     TabulatedSpectrum,
     rms_height,
     rms_slope,
@@ -68,6 +72,14 @@ LAYERS_GO_WITH = {
 }
 """The same where there may be more layers, of two inputs each."""
 
+COUNTERFACE_ROUGHNESS = tuple(f"counterface_{name}" for name in ROUGHNESS_INPUTS)
+ELASTIC_COUNTERFACE = "young_modulus_counterface"
+COUNTERFACE_INPUTS = (*COUNTERFACE_ROUGHNESS, ELASTIC_COUNTERFACE, "poisson_ratio_counterface")
+"""A counterface that is rough, if its five roughness inputs are given, and elastic, if its modulus is."""
+
+RIDGE_INPUTS = ("ridge_spacing", "ridge_width", "ridge_height")
+"""Ridges of a finger pad, on whose tops all contact is."""
+
 SKIN_DEFAULTS = {
     "poisson_ratio_layer": 0.5,
     "poisson_ratio_bulk": 0.5,
@@ -76,6 +88,23 @@ SKIN_DEFAULTS = {
     "area_correction": AREA_CORRECTION,
 }
 """Incompressible, elastic, with the Yang–Persson correction."""
+
+FURTHER: dict[str, Any] = {
+    "optional": {**SKIN_DEFAULTS, "poisson_ratio_counterface": 0.5},
+    "accepted": (*COUNTERFACE_ROUGHNESS, ELASTIC_COUNTERFACE, *RIDGE_INPUTS),
+    "goes_with": {
+        **LAYERS_GO_WITH,
+        # each with the next, so that none can be missing
+        **dict(
+            zip(COUNTERFACE_ROUGHNESS, COUNTERFACE_ROUGHNESS[1:] + COUNTERFACE_ROUGHNESS[:1], strict=True)
+        ),
+        "poisson_ratio_counterface": ELASTIC_COUNTERFACE,
+        "ridge_spacing": "ridge_width",
+        "ridge_width": "ridge_spacing",
+        "ridge_height": "ridge_width",
+    },
+}
+"""Fields of a forward model that knows counterface and ridges."""
 
 PRESSURE_ALTERNATIVES = (
     ("nominal_pressure",),
@@ -86,10 +115,19 @@ PRESSURE_ALTERNATIVES = (
 
 
 def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
-    """Return the roughness spectrum: self-affine from the five roughness inputs, or the table.
+    """Return the roughness spectrum: self-affine from the five roughness inputs, or the table; with that of a rough counterface.
 
     A table is scaled to ``rms_height`` if that input is given.
     """
+    if COUNTERFACE_ROUGHNESS[0] in inputs:
+        counterface = {
+            name: inputs[own] for name, own in zip(ROUGHNESS_INPUTS, COUNTERFACE_ROUGHNESS, strict=True)
+        }
+        return SummedSpectrum(_own_spectrum(inputs, tables), SelfAffineSpectrum(**counterface))
+    return _own_spectrum(inputs, tables)
+
+
+def _own_spectrum(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     table = tables.spectrum
     if table is None:
         return SelfAffineSpectrum(**{name: inputs[name] for name in ROUGHNESS_INPUTS})
@@ -99,11 +137,22 @@ def spectrum_of(inputs: Inputs, tables: Tables) -> PowerSpectrum:
     return table
 
 
-def skin_of(inputs: Inputs) -> LayeredSkin | StackedSkin | HomogeneousSolid:
-    """Return the solid of ``inputs``: skin of as many layers as are given, or a homogeneous one of ``young_modulus``.
+def skin_of(inputs: Inputs) -> ElasticSolid:
+    """Return the solid of ``inputs``: skin of as many layers as are given, or a homogeneous one, with an elastic counterface.
 
     All that lies below the stratum corneum has the Poisson ratio of the bulk.
     """
+    skin = _skin_alone(inputs)
+    return skin if ELASTIC_COUNTERFACE not in inputs else SolidPair(skin, _counterface_of(inputs))
+
+
+def _counterface_of(inputs: Inputs) -> HomogeneousSolid:
+    return HomogeneousSolid(
+        young_modulus=inputs[ELASTIC_COUNTERFACE], poisson_ratio=inputs["poisson_ratio_counterface"]
+    )
+
+
+def _skin_alone(inputs: Inputs) -> LayeredSkin | StackedSkin | HomogeneousSolid:
     deeper = [names for names in (DERMIS_INPUTS, FAT_INPUTS) if names[0] in inputs]
     if not deeper:
         return one_layer_skin_of(inputs)
@@ -150,7 +199,23 @@ def nominal_pressure_of(inputs: Inputs) -> FloatArray:
 
 def modulus_under_ball_of(inputs: Inputs) -> FloatArray:
     """Return the plane-strain modulus [Pa] that gives the contact of the ball of ``inputs`` on their solid, Hertz."""
-    return modulus_under_ball(inputs["normal_force"], inputs["sphere_radius"], skin=skin_of(inputs))
+    modulus = modulus_under_ball(inputs["normal_force"], inputs["sphere_radius"], skin=_skin_alone(inputs))
+    return (
+        modulus
+        if ELASTIC_COUNTERFACE not in inputs
+        else in_series(modulus, _counterface_of(inputs).contact_modulus)
+    )
+
+
+def ridge_share_of(inputs: Inputs) -> FloatArray | None:
+    """Return the area of the tops of ridges over the nominal one; None without ridges."""
+    return np.asarray(inputs["ridge_width"] / inputs["ridge_spacing"]) if "ridge_width" in inputs else None
+
+
+def pressure_on_skin_of(inputs: Inputs) -> FloatArray:
+    """Return the pressure [Pa] on what roughness is pressed with: p0, or p0 λ/w on the tops of ridges, which carry all load."""
+    pressure, share = nominal_pressure_of(inputs), ridge_share_of(inputs)
+    return pressure if share is None else np.asarray(pressure / share)
 
 
 def pressure_and_slope(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
@@ -183,12 +248,20 @@ def validate_contact(inputs: Inputs, tables: Tables) -> None:
     """Raise InputError naming the input of spectrum or solid that cannot be, such as a roll-off below the band."""
     check_one_solid(inputs)
     spectrum = spectrum_of(inputs, tables)
-    if isinstance(spectrum, SelfAffineSpectrum):
-        validate_spectrum(spectrum)
+    parts = [spectrum.first, spectrum.second] if isinstance(spectrum, SummedSpectrum) else [spectrum]
+    for part in parts:
+        if isinstance(part, SelfAffineSpectrum):
+            validate_spectrum(part)
     validate_solid(skin_of(inputs))
+    share = ridge_share_of(inputs)
+    if share is not None and not np.all(share <= 1):
+        raise InputError(
+            "ridge_width is larger than ridge_spacing; expected tops that are narrower than their distance"
+        )
 
 
-_ENTERS_VARIANCE = (*SOLID_INPUTS, *ROUGHNESS_INPUTS)
+ENTERS_VARIANCE = (*SOLID_INPUTS, *ROUGHNESS_INPUTS, *COUNTERFACE_INPUTS)
+"""Inputs that the stress variance depends on."""
 
 
 def variance_of(inputs: Inputs, tables: Tables) -> FloatArray:
@@ -197,18 +270,22 @@ def variance_of(inputs: Inputs, tables: Tables) -> FloatArray:
     Load and yield stress do not enter it: rows that differ in these alone share it.
     """
     return on_distinct(
-        {name: inputs[name] for name in _ENTERS_VARIANCE if name in inputs},
+        {name: inputs[name] for name in ENTERS_VARIANCE if name in inputs},
         lambda skins: integrated(spectrum_of(skins, tables), skin_of(skins)),
     )
 
 
 def contact_area_of(inputs: Inputs, tables: Tables, twice_variance: FloatArray | None = None) -> ContactArea:
-    """Return the relative contact area (elastic, plastic) at full magnification, or for a given V."""
+    """Return the relative contact area (elastic, plastic) at full magnification, or for a given V; ridges are counted in."""
     if twice_variance is None:
         twice_variance = twice_stress_variance(spectrum_of(inputs, tables), skin_of(inputs))
-    return elastoplastic_contact_area(
-        nominal_pressure_of(inputs),
+    area = elastoplastic_contact_area(
+        pressure_on_skin_of(inputs),
         twice_variance,
         yield_stress=inputs["yield_stress"],
         area_correction=inputs["area_correction"],
     )
+    share = ridge_share_of(inputs)
+    if share is None:
+        return area
+    return ContactArea(area.elastic * share, area.plastic * share, 1 - share * (1 - area.non_contact))

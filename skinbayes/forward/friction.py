@@ -7,23 +7,24 @@ from skinbayes.contact.elastoplastic import total_area
 from skinbayes.forward.base import ForwardModel, Inputs, Tables
 from skinbayes.forward.contact_area import CONTACT_AREA_PROFILE
 from skinbayes.forward.contact_inputs import (
-    LAYERS_GO_WITH,
+    FURTHER,
     PRESSURE_ALTERNATIVES,
-    SKIN_DEFAULTS,
     SOLID_ALTERNATIVES,
     contact_area_of,
     nominal_pressure_of,
+    pressure_on_skin_of,
     spectrum_of,
     validate_contact,
     variance_of,
 )
-from skinbayes.forward.small_contact import SMALL_CONTACT, explain_small_contact, small_contact_flags
+from skinbayes.forward.ridges import CLOSING_RIDGES, contact_flags, explain_contact
+from skinbayes.forward.small_contact import SMALL_CONTACT
 from skinbayes.friction import coefficient
 from skinbayes.roughness import rms_slope
 
 
 def _evaluate(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
-    pressure = nominal_pressure_of(inputs)
+    pressure = pressure_on_skin_of(inputs)
     twice_variance = variance_of(inputs, tables)
     area = total_area(pressure, twice_variance, inputs["yield_stress"], inputs["area_correction"])
     return {"friction_coefficient": coefficient(inputs["frictional_shear_stress"], area, pressure)}
@@ -44,13 +45,12 @@ MODEL = ForwardModel(
     summary="friction coefficient of skin on a smooth hard surface: shear stress times area of real contact over load",
     observables=("friction_coefficient",),
     required=("frictional_shear_stress", SOLID_ALTERNATIVES, PRESSURE_ALTERNATIVES),
-    goes_with=LAYERS_GO_WITH,
-    optional=SKIN_DEFAULTS,
+    **FURTHER,
     evaluate=_evaluate,
     validate=validate_contact,
-    explain=explain_small_contact,
-    flags=small_contact_flags,
-    flag_meanings=SMALL_CONTACT,
+    explain=explain_contact,
+    flags=contact_flags,
+    flag_meanings=SMALL_CONTACT | CLOSING_RIDGES,
     derived=_derived,
     derived_names=("nominal_pressure", "rms_slope", "relative_contact_area", "plastic_fraction"),
     blocks=("rms_slope",),

@@ -12,6 +12,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.surface_draws import SurfaceDraws
 from skinbayes.forward import FlowCurve, ForwardModel, Tables, forward_model
 from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
 from skinbayes.problem.covariates import check_covariates
@@ -32,6 +33,7 @@ from skinbayes.problem.rows import (
 from skinbayes.problem.settings import apply_settings
 from skinbayes.problem.shared_scatter import scatter_parameters, shared_scatter
 from skinbayes.problem.surface import Surface, choose_surface
+from skinbayes.problem.surface_prior import SurfacePrior, surface_prior
 from skinbayes.problem.tied import resolve_ties
 from skinbayes.roughness import TabulatedSpectrum
 
@@ -56,7 +58,7 @@ def bind(
     data: Dataset | None = None,
     *,
     forward: ForwardModel | None = None,
-    surface: TabulatedSpectrum | None = None,
+    surface: TabulatedSpectrum | SurfaceDraws | None = None,
     rheology: Dataset | None = None,
     settings: Mapping[str, str] | None = None,
     conditions: Data | None = None,
@@ -69,7 +71,7 @@ def bind(
     spec : the model
     data : all its rows are used; without it those of the data set that the model names
     forward : the forward model, if not the one of the name that the model gives
-    surface : a measured spectrum in place of the surface of the model
+    surface : a measured spectrum, or draws of a surface, in place of the surface of the model
     rheology : flow curves in place of those that the model names
     settings : values to fix, as :func:`skinbayes.load_problem` takes them
     conditions : rows to predict instead of the data's
@@ -88,16 +90,26 @@ def bind(
     asked = None if conditions is None else user_rows(spec, forward, conditions)
     written, chosen, taken = apply_settings(spec, forward, settings, () if asked is None else asked.values)
     found = choose_surface(spec, chosen or surface)
-    spec = replace(spec, surface_name=found.name, surface_file=found.file, surface_stated=found.stated)
+    spec = replace(
+        spec,
+        surface_name=found.name,
+        surface_file=found.file,
+        surface_stated=found.stated,
+        surface_posterior=None if found.draws is None else found.draws.file,
+    )
     curves = load_flow_curves(spec, forward, rheology)
     taken |= {REPLACED} if curves else set()
     rows = _rows(spec, forward, data, taken) if asked is None else _Rows(asked.without(taken))
-    parameters = _completed(spec, forward, written, found, rows, bool(curves))
+    prior = surface_prior(
+        found.draws, {p.name for p in written} | set(rows.conditions.values), str(spec.path)
+    )
+    parameters = _completed(spec, forward, written, found, prior, rows, bool(curves))
     check_scatter(spec, rows.observations)
     check_derived(
-        spec, forward, parameters, rows.conditions, whole_data=rows.dataset is not None and not other_data
-    )
-    problem = _problem(spec, forward, parameters, found.spectrum, rows, curves, settings | options)
+        spec, forward, parameters, rows.conditions, whole_data=rows.dataset is not None and not other_data,
+        further=() if prior is None else prior.names,
+    )  # fmt: skip
+    problem = _problem(spec, forward, parameters, found.spectrum, prior, rows, curves, settings | options)
     _check_medians(problem)
     return problem
 
@@ -124,6 +136,7 @@ def _completed(
     forward: ForwardModel,
     parameters: list[ParameterSpec],
     surface: Surface,
+    prior: SurfacePrior | None,
     rows: _Rows,
     has_curves: bool,
 ) -> tuple[ParameterSpec, ...]:
@@ -135,7 +148,7 @@ def _completed(
         )
     parameters = parameters + [p for p in surface.parameters if p.name not in given]
     check_names(spec, forward, parameters, rows.conditions)
-    given |= {p.name for p in parameters}
+    given |= {p.name for p in parameters} | set(() if prior is None else prior.names)
     check_covariates(spec, forward)
     columns = () if rows.dataset is None else rows.dataset.units
     check_required(spec, forward, given | ({REPLACED} if has_curves else set()), surface.spectrum, columns)
@@ -145,6 +158,7 @@ def _completed(
     ]
     inputs = resolve_ties([*parameters, *defaults], str(spec.path), rows.conditions.values)
     shared = scatter_parameters(spec, rows.conditions, rows.columns) if rows.observations else ()
+    inputs += () if prior is None else prior.parameters
     return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups, *shared)
 
 
@@ -153,6 +167,7 @@ def _problem(
     forward: ForwardModel,
     parameters: tuple[ParameterSpec, ...],
     spectrum: TabulatedSpectrum | None,
+    prior: SurfacePrior | None,
     rows: _Rows,
     curves: Mapping[str, FlowCurve],
     settings: Mapping[str, str],
@@ -179,6 +194,7 @@ def _problem(
         flow_curves=curves,
         settings=settings,
         correlated=shared,
+        surface_prior=prior,
     )
     try:
         _ = problem.plan

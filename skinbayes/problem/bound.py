@@ -23,6 +23,7 @@ from skinbayes.problem.observations import Observation
 from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.shared_scatter import SharedScatter
+from skinbayes.problem.surface_prior import SurfacePrior
 from skinbayes.problem.tied import whole_ties
 from skinbayes.statistics.correlated_scatter import CorrelatedScatter
 from skinbayes.statistics.groups import CrossedGroups
@@ -49,6 +50,7 @@ class BoundModel(Posterior):
     flow_curves : flow curve of each liquid, empty without ``[rheology]``
     settings : values set over the model file, as given
     tied : parameters that are multiples of free or fixed ones
+    surface_prior : what draws of a surface say about its roughness, or None
     correlated : group effects together with the discrepancy and correlated noise, or None if there is neither of these two
 
     Examples
@@ -76,6 +78,7 @@ class BoundModel(Posterior):
     settings: Mapping[str, str] = field(default_factory=dict)
     tied: tuple[ParameterSpec, ...] = ()
     correlated: SharedScatter | None = None
+    surface_prior: SurfacePrior | None = None
 
     @property
     def name(self) -> str:
@@ -193,6 +196,8 @@ class BoundModel(Posterior):
         plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows, self.tied)
         same, varying = self._parted if conditions is None else _parted(plan, rows)
         values = same | {entry.name: entry.values(theta) for entry in varying}
+        if self.surface_prior is not None:
+            values |= self.surface_prior.inputs(values)
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
 
     @cached_property

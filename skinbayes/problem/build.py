@@ -13,6 +13,7 @@ from skinbayes.files.dataset import Dataset, as_dataset
 from skinbayes.files.locate import shipped_names
 from skinbayes.files.modelfile import read_model
 from skinbayes.files.noise_block import unusable_noise_families
+from skinbayes.files.surface_draws import SurfaceDraws, holds_draws
 from skinbayes.files.toml_text import toml_text
 from skinbayes.files.written import written_parameter, written_value
 from skinbayes.forward import ForwardModel, forward_model
@@ -35,7 +36,7 @@ def build_problem(
     spread: str | None = None,
     input_spread: str | None = None,
     missing: str | None = None,
-    surface: str | Path | TabulatedSpectrum | None = None,
+    surface: str | Path | TabulatedSpectrum | SurfaceDraws | None = None,
     groups: Mapping[str, Any] | None = None,
     discrepancy: Mapping[str, Any] | None = None,
     covariates: Mapping[str, Mapping[str, Any]] | None = None,
@@ -65,7 +66,8 @@ def build_problem(
     rows : label column to the labels of the rows that are used
     spread, input_spread : ``"use"`` or ``"ignore"`` the columns ``…_standard_deviation`` of observables, and of inputs
     missing : ``"drop"`` to leave out rows without a value in a column that is used
-    surface : a named surface, the path of a spectrum, or a spectrum
+    surface : a named surface, the path of a spectrum, a spectrum, or what an earlier fit found: the path of its run, or
+        ``fit.surface()``
     groups : label column to the prior of the scale of the effects that its rows share
     discrepancy : ``along`` which column or columns the theory misses smooth curves; ``within`` which label, on which ``axis``,
         and the priors of ``size`` and ``length`` if they are not the usual ones
@@ -111,19 +113,22 @@ def build_problem(
     }  # fmt: skip
     spec = replace(read_model(content, Path(name), ""), text=toml_text(content))
     dataset = None if dataset is None else selected_dataset(spec, dataset)
-    spectrum = surface if isinstance(surface, TabulatedSpectrum) else None
+    spectrum = surface if isinstance(surface, TabulatedSpectrum | SurfaceDraws) else None
     return bind(spec, dataset, forward=model, surface=spectrum, rheology=curves)
 
 
 def common_tables(
-    name: str, surface: str | Path | TabulatedSpectrum | None, parameters: Mapping[str, Any]
+    name: str, surface: str | Path | TabulatedSpectrum | SurfaceDraws | None, parameters: Mapping[str, Any]
 ) -> dict[str, Any]:
     """``[surface]`` and ``[parameters]`` of a model file from values."""
     content: dict[str, Any] = {}
     if isinstance(surface, TabulatedSpectrum):
         content["surface"] = {"file": f"{name}-spectrum.csv"}
+    elif isinstance(surface, SurfaceDraws):
+        content["surface"] = {"posterior": str(surface.file or f"{name}-surface.csv")}
     elif surface is not None:
-        content["surface"] = {"name" if str(surface) in SURFACES else "file": str(surface)}
+        kind = "name" if str(surface) in SURFACES else "posterior" if holds_draws(Path(surface)) else "file"
+        content["surface"] = {kind: str(surface)}
     content["parameters"] = {
         key: written_parameter(entry, _unit(key), f"{name}: parameters.{key}")
         for key, entry in parameters.items()

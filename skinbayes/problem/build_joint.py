@@ -11,6 +11,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.joint_model import EXPERIMENTS, read_joint_model
 from skinbayes.files.noise_block import unusable_noise_families
+from skinbayes.files.surface_draws import SurfaceDraws
 from skinbayes.files.toml_text import toml_text
 from skinbayes.forward import ForwardModel, forward_model
 from skinbayes.problem.build import common_tables, tables_of
@@ -24,7 +25,7 @@ def build_joint_problem(
     experiments: Mapping[str, Mapping[str, Any]],
     *,
     parameters: Mapping[str, Any],
-    surface: str | Path | TabulatedSpectrum | None = None,
+    surface: str | Path | TabulatedSpectrum | SurfaceDraws | None = None,
     name: str = "my-model",
     title: str = "",
     description: str = "",
@@ -92,6 +93,6 @@ def build_joint_problem(
     content: dict[str, Any] = {"format": 1, "title": title or name, "description": description}
     content |= {EXPERIMENTS: tables, **common_tables(name, surface, parameters)}
     spec = replace(read_joint_model(content, Path(name), ""), text=toml_text(content))
-    spectrum = surface if isinstance(surface, TabulatedSpectrum) else None
+    spectrum = surface if isinstance(surface, TabulatedSpectrum | SurfaceDraws) else None
     chosen = {key: selected_dataset(spec.experiments[key], dataset) for key, dataset in data.items()}
     return bind_joint(spec, chosen, forwards=models, surface=spectrum, rheologies=curves)

@@ -130,6 +130,8 @@ def setup(problem: StatisticalModel) -> tuple[str, ...]:
             if problem.spec.observables
             else "It has no data: it serves 'predict' only."
         )
+    if problem.surface_prior is not None:
+        said.append(problem.surface_prior.sentence())
     said += surface_sentence(problem, problem.prior_medians(), " at the prior medians" if free else "")
     return tuple(said)
 

@@ -110,11 +110,12 @@ def check_derived(
     parameters: Sequence[ParameterSpec],
     conditions: Conditions,
     whole_data: bool,
+    further: Sequence[str] = (),
 ) -> None:
     """Refuse derived products of factors that do not exist, or of rows that the model's own data do not have."""
     if not spec.derived:
         return
-    known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names)
+    known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names) | set(further)
     taken = {*QUANTITIES, *LABELS, *RESERVED_NAMES, *known}
     for name, block in spec.derived.items():
         if name in taken or not (name.isidentifier() and name.isascii()):

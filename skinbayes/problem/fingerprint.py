@@ -19,6 +19,7 @@ from skinbayes.forward import ForwardModel, Tables
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.problem.shared_scatter import SharedScatter
+from skinbayes.problem.surface_prior import SurfacePrior
 from skinbayes.roughness import TabulatedSpectrum
 from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise import NoiseFamily
@@ -45,6 +46,7 @@ def digest_model(
     correlated: SharedScatter | None,
     tables: Tables,
     data_digest: str,
+    surface: SurfacePrior | None = None,
 ) -> str:
     """Digest of everything the posterior depends on; comments and titles do not enter."""
     from skinbayes.version import __version__
@@ -70,6 +72,7 @@ def digest_model(
             "spectrum": None if not isinstance(table, TabulatedSpectrum) else [
                 _array(table.wavevector), _array(table.node_power), _array(table.scale)
             ],
+            **({} if surface is None else {"surface": [surface.names, *map(_array, surface.map)]}),
             "flow_curves": [[_array(c.shear_rate), _array(c.measured_viscosity)] for c in tables.flow_curves or ()],
         }
     )  # fmt: skip

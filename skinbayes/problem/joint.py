@@ -15,6 +15,7 @@ from skinbayes.problem.joint_check import check_joint
 from skinbayes.problem.joint_densities import JointModel
 from skinbayes.problem.joint_text import joint_summary, write_joint
 from skinbayes.problem.problem import Problem
+from skinbayes.problem.surface_prior import DEVIATE
 from skinbayes.problem.target import PosteriorTarget
 
 
@@ -120,7 +121,7 @@ def joint_problem(
     experiments : the problem of each experiment by name
     settings : values set over the model file
     """
-    shared = spec.shared
+    shared = spec.shared | {DEVIATE}  # the surface belongs to the skin
 
     def together(name: str, p: ParameterSpec) -> ParameterSpec:
         """A parameter of one experiment under its name among those of all."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset
 from skinbayes.files.joint_model import EXPERIMENT, EXPERIMENTS, JointSpec
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.surface_draws import SurfaceDraws
 from skinbayes.forward import ForwardModel, forward_model
 from skinbayes.phrases import and_list
 from skinbayes.problem.bind import bind
@@ -25,7 +27,7 @@ def bind_joint(
     *,
     settings: Mapping[str, str] | None = None,
     forwards: Mapping[str, ForwardModel] | None = None,
-    surface: TabulatedSpectrum | None = None,
+    surface: TabulatedSpectrum | SurfaceDraws | None = None,
     rheologies: Mapping[str, Dataset] | None = None,
 ) -> JointProblem:
     """Make one problem of the experiments of a validated model.
@@ -100,7 +102,7 @@ def _check_taken(spec: JointSpec, forwards: Mapping[str, ForwardModel]) -> None:
                 f"{spec.path}: parameters.{p.label}: {has} such input.{suggestions(p.name, inputs)} "
                 f"Expected one of {', '.join(inputs)}"
             )
-    has_surface = spec.surface_name is not None or spec.surface_file is not None
+    has_surface = any((spec.surface_name, spec.surface_file, spec.surface_posterior))
     if has_surface and not any(forward.uses_surface for forward in forwards.values()):
         raise InputError(f"{spec.path}: surface: none of the experiments has a rough surface; drop it")
 
@@ -152,12 +154,10 @@ def experiment_of(spec: JointSpec, name: str, forward: ForwardModel | None = Non
     """One experiment as a model of its own, with the parameters and the surface that it takes."""
     one = spec.experiments[name]
     forward = forward or forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
-    one = replace(one, parameters=_of_experiment(spec, forward, name))
-    if not forward.uses_surface:
-        return replace(one, surface_name=None, surface_file=None, surface_stated=None)
+    names = ("surface_name", "surface_file", "surface_stated", "surface_posterior")
+    surface: dict[str, Any] = {key: getattr(spec, key) if forward.uses_surface else None for key in names}
     return replace(
         one,
-        surface_name=spec.surface_name,
-        surface_file=spec.surface_file,
-        surface_stated=spec.surface_stated,
+        parameters=_of_experiment(spec, forward, name),
+        **surface,
     )

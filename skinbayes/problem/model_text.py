@@ -68,7 +68,10 @@ def model_content(problem: BoundModel, path: Path, files: dict[Path, str], stem:
     content["options"] = {} if problem.forward.chosen == usual else dict(problem.forward.chosen)
     if spec.observables:
         content["data"] = _data(problem, path, beside)
-    if problem.tables.spectrum is not None:
+    if problem.surface_prior is not None:
+        draws = problem.surface_prior.draws
+        content["surface"] = {"posterior": _located(draws.file, path) or beside("surface", draws.text())}
+    elif problem.tables.spectrum is not None:
         content["surface"] = {
             "file": _located(spec.surface_file, path)
             or beside("spectrum", spectrum_text(problem.tables.spectrum)),

@@ -292,6 +292,8 @@ class PredictingModel(BoundModel):
         inputs = self.inputs(theta)
         with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
             quantities = dict(self.model.derived(inputs, self.tables))
+            if self.surface_prior is not None:
+                quantities |= {name: inputs[name] for name in self.surface_prior.names}
             known = inputs | quantities
             for name, block in self.spec.derived.items():
                 product = np.ones((1, 1))

@@ -40,7 +40,7 @@ class StatisticalModel(PredictingModel):
         """Digest of everything the posterior depends on; a run is only continued where it is the same."""
         return digest_model(
             self.spec, self.forward, self.parameters, self.conditions, self.observations, self.input_spread,
-            self.groups, self.correlated, self.tables, self.data_fingerprint,
+            self.groups, self.correlated, self.tables, self.data_fingerprint, self.surface_prior,
         )  # fmt: skip
 
     @cached_property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.files.stated_surface import StatedSurface
+from skinbayes.files.surface_draws import SurfaceDraws, holds_draws, read_surface_draws
 from skinbayes.forward import ROUGHNESS_INPUTS
 from skinbayes.roughness import TabulatedSpectrum, named_surface
 
@@ -25,7 +27,8 @@ class Surface:
     spectrum : measured spectrum, or None
     file : its file, or None
     stated : what the model file says about it, or None
-    parameters : the five roughness parameters of a named surface; empty otherwise
+    parameters : the five roughness parameters of a named surface, or those that draws of a surface leave fixed
+    draws : what an earlier fit, or the user, knows of the surface, or None
     """
 
     name: str | None = None
@@ -33,19 +36,26 @@ class Surface:
     file: Path | None = None
     stated: StatedSurface | None = None
     parameters: tuple[ParameterSpec, ...] = ()
+    draws: SurfaceDraws | None = None
 
 
-def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Surface:
-    """The surface that is given (its name, the path of a spectrum, or a spectrum), or else that of the model file.
+def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | SurfaceDraws | None) -> Surface:
+    """The surface that is given (its name, the path of a spectrum or of draws, or either), or else that of the model file.
 
     Raises :class:`InputError` for a name that is not known or a file that holds no spectrum.
     """
     if isinstance(given, TabulatedSpectrum):
         return Surface(spectrum=given)
+    if isinstance(given, SurfaceDraws):
+        return _of_draws(given)
     name, file, stated = spec.surface_name, spec.surface_file, spec.surface_stated
+    draws = spec.surface_posterior
     if given is not None:
-        is_file = given.endswith(".csv") or Path(given).exists()
+        is_file = given.endswith((".csv", ".nc")) or Path(given).exists()
         name, file, stated = (None, Path(given), None) if is_file else (given, None, None)
+        draws = file if file is not None and holds_draws(file) else None
+    if draws is not None:
+        return _of_draws(read_surface_draws(draws))
     if file is not None:
         from skinbayes.files.spectrum import read_spectrum
 
@@ -57,5 +67,12 @@ def choose_surface(spec: ModelSpec, given: str | TabulatedSpectrum | None) -> Su
     except InputError as error:
         raise InputError(f"{spec.path}: surface.name: {error}") from None
     values = {key: float(np.asarray(getattr(named, key))) for key in ROUGHNESS_INPUTS}
-    parameters = (ParameterSpec.of_value(key, value, f"surface {name}") for key, value in values.items())
-    return Surface(name=name, parameters=tuple(parameters))
+    return Surface(name=name, parameters=_parameters(values, f"surface {name}"))
+
+
+def _of_draws(draws: SurfaceDraws) -> Surface:
+    return Surface(draws=draws, parameters=_parameters(draws.fixed, f"the surface of {draws.source}"))
+
+
+def _parameters(values: Mapping[str, float], source: str) -> tuple[ParameterSpec, ...]:
+    return tuple(ParameterSpec.of_value(key, value, source) for key, value in values.items())

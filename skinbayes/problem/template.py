@@ -165,7 +165,7 @@ def _labels(spec: ModelSpec) -> dict[str, str]:
 def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[str, str]:
     """Numeric input to the reason why it is a column; notes on alternatives are added to ``notes``."""
     given = {parameter.name for parameter in spec.parameters}
-    if spec.surface_name is not None or spec.surface_file is not None or not forward.uses_surface:
+    if any((spec.surface_name, spec.surface_file, spec.surface_posterior)) or not forward.uses_surface:
         given |= set(ROUGHNESS_INPUTS)
     if spec.rheology is not None:
         given.add(REPLACED)

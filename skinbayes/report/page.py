@@ -11,6 +11,7 @@ import numpy as np
 from skinbayes.comparison.verdicts import DOUBT, LOSES
 from skinbayes.fit.joint_fit import JointFit
 from skinbayes.fit.predicted import observed_values
+from skinbayes.fit.surface_variance import surface_shares
 from skinbayes.problem.surface_numbers import surface_sentence
 from skinbayes.report import opening, quality, sentences, tables
 from skinbayes.report.discrepancy import discrepancy_sentences
@@ -174,6 +175,7 @@ def _assumptions(fit: Fit, check: CheckReport | None) -> list[str]:
         said.append(f"The theory was evaluated with {', '.join(f'{k} = {v}' for k, v in options.items())}.")
     if fit.problem is not None:
         said += surface_sentence(fit.problem, np.median(fit.theta(), axis=0), " at the posterior medians")
+        said += [sentences.with_symbols(fit, sentence) for sentence in surface_shares(fit)]
     if accuracy := str(fit.provenance.get("accuracy") or ""):
         said.append(f"{accuracy[:1].upper()}{accuracy[1:]}".removesuffix(".") + ".")
     if free > data:

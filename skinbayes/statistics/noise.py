@@ -15,11 +15,13 @@ relative       normal about f         (scale f)² + spread² + (discrepancy f)²
 lognormal      ln y normal about ln f scale² + (spread/y)² + discrepancy²
 student_t      t about f              as gaussian
 log_student_t  ln y t about ln f      as lognormal
+gamma          gamma of mean f        as lognormal
 ============== ====================== ==============================================
 
 The shape of the distribution – its density and draws at width 1 – is part of the family, see
 :mod:`skinbayes.statistics.noise_families`, where the families of this table are. For Student's t, w is the scale, not the
-standard deviation; the known spread is widened by the same tails.
+standard deviation; the known spread is widened by the same tails. For gamma, w is the standard deviation over the mean, and the
+shape of the distribution changes with it.
 In the logarithmic families spread/y is a property of the datum as it was reported: it does not change when
 another value of y is drawn.
 """
@@ -52,6 +54,8 @@ class NoiseFamily:
     logarithmic : True if ln of the data scatters, so that data and predictions must be positive
     shape_parameters : names of the parameters beside the scale, dimensionless and positive, such as ``degrees_of_freedom``
     normal : True if the residual is normally distributed; only then can effects of groups be integrated out
+    one_shape : False if the distribution of the residual changes its shape with the width: then the two functions are of the
+        residual itself, not of the residual over its width, and take the width as a keyword
 
     Examples
     --------
@@ -71,6 +75,7 @@ class NoiseFamily:
     logarithmic: bool
     shape_parameters: tuple[str, ...] = ()
     normal: bool = False
+    one_shape: bool = True
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -222,8 +227,12 @@ class NoiseFamily:
         """
         known = self._shape(shape)
         log_y = np.log(observed) if self.logarithmic else 0.0
-        z = ((log_y - np.log(predicted)) if self.logarithmic else (observed - predicted)) / width
-        value = self.standard_log_density(z, **known) - np.log(width) - log_y
+        z = (log_y - np.log(predicted)) if self.logarithmic else (observed - predicted)
+        if self.one_shape:
+            z = z / width
+            value = self.standard_log_density(z, **known) - np.log(width) - log_y
+        else:
+            value = self.standard_log_density(z, width=width, **known) - log_y
         # z is not finite for all that is impossible but a width without end, whose density is zero
         return np.where(np.isfinite(z) & (value < inf), value, -inf)
 
@@ -261,11 +270,14 @@ class NoiseFamily:
         """
         f = np.asarray(predicted, dtype=float)
         w = self.width(f, scale, spread, discrepancy, observed)
-        z = self.standard_draw(rng, w.shape, **self._shape(shape))
         with np.errstate(all="ignore"):
+            if self.one_shape:
+                residual = w * self.standard_draw(rng, w.shape, **self._shape(shape))
+            else:
+                residual = self.standard_draw(rng, w.shape, width=w, **self._shape(shape))
             if self.logarithmic:
-                return np.where(f > 0.0, f * np.exp(w * z), np.nan)
-            return np.where(np.isfinite(f), f + w * z, np.nan)
+                return np.where(f > 0.0, f * np.exp(residual), np.nan)
+            return np.where(np.isfinite(f), f + residual, np.nan)
 
     def check_observed(self, observed: ArrayLike) -> None:
         """Refuse data that this family can never produce.

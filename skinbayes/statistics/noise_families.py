@@ -34,6 +34,27 @@ def _student_draw(
     return rng.standard_t(np.broadcast_to(degrees_of_freedom, size))
 
 
+_NARROW = 1e-3  # below this width the shape 1/w² is so large that ln Γ is taken from its Stirling series
+
+
+def _gamma_log_density(r: FloatArray, width: FloatArray) -> FloatArray:
+    """Of r = ln(y/f) where y is gamma distributed with mean f and standard deviation w f."""
+    shape = 1.0 / (width * width)
+    stirling = 0.5 * np.log(shape / (2 * pi)) - 1 / (12 * shape)
+    exact = shape * np.log(shape) - shape - special.gammaln(shape)
+    # r − expm1(r) loses all digits where r is small
+    fall = np.where(np.abs(r) < 1e-4, -0.5 * r * r * (1 + r / 3 * (1 + r / 4)), r - np.expm1(r))
+    return shape * fall + np.where(width < _NARROW, stirling, exact)
+
+
+def _gamma_draw(rng: np.random.Generator, size: tuple[int, ...], width: FloatArray) -> FloatArray:
+    # a width of zero is a datum without scatter; gamma variates of shape below 1 may underflow to 0, which no datum is
+    shape = 1.0 / np.square(np.where(width > 0.0, width, 1.0))
+    drawn = rng.standard_gamma(np.where(np.isfinite(shape), shape, 1.0), size) / shape
+    value = np.log(np.maximum(drawn, np.finfo(float).tiny))
+    return np.where(width > 0.0, value, np.where(width == 0.0, 0.0, np.nan))
+
+
 def _normal(name: str, description: str, relative: bool, logarithmic: bool) -> NoiseFamily:
     return NoiseFamily(
         name, description, _normal_log_density, _normal_draw, relative, logarithmic, normal=True
@@ -122,6 +143,15 @@ for _family in (
     ),
     _student(
         "log_student_t", "Student's t of ln; positive data with outliers", relative=True, logarithmic=True
+    ),
+    NoiseFamily(
+        "gamma",
+        "gamma about f; averages of positive numbers of exponential scatter, such as ordinates of a periodogram",
+        _gamma_log_density,
+        _gamma_draw,
+        relative=True,
+        logarithmic=True,
+        one_shape=False,
     ),
 ):
     register_noise(_family)

@@ -1,4 +1,4 @@
-"""Measured surfaces: height maps and line profiles, and the power spectra that they have."""
+"""Measured surfaces: height maps and line profiles, and the power spectra that they have; synthetic surfaces."""
 
 from skinbayes.topography.analysis import SurfaceAnalysis, analyse_surface
 from skinbayes.topography.area_spectrum import area_spectrum
@@ -17,19 +17,24 @@ from skinbayes.topography.line_spectrum import ProfileSpectrum, isotropic_spectr
 from skinbayes.topography.measured_spectrum import MeasuredSpectrum
 from skinbayes.topography.merging import MergedSpectrum, merge_spectra
 from skinbayes.topography.numbers import SurfaceNumbers, surface_numbers
+from skinbayes.topography.ridges import MeasuredRidges, measure_ridges
+from skinbayes.topography.synthesis import Anisotropy, Ridges, random_surface
 from skinbayes.topography.trend import remove_trend
 from skinbayes.topography.undefined import fill_undefined, largest_defined_rectangle
 
 __all__ = [
+    "Anisotropy",
     "Band",
     "DirectionalSpectrum",
     "HeightMap",
     "LineProfile",
+    "MeasuredRidges",
     "MeasuredSpectrum",
     "MeasuredSurface",
     "MergedSpectrum",
     "Plateau",
     "ProfileSpectrum",
+    "Ridges",
     "SurfaceAnalysis",
     "SurfaceCollection",
     "SurfaceNumbers",
@@ -43,7 +48,9 @@ __all__ = [
     "isotropic_spectrum",
     "largest_defined_rectangle",
     "line_spectrum",
+    "measure_ridges",
     "merge_spectra",
+    "random_surface",
     "reliable_band",
     "remove_spikes",
     "remove_trend",

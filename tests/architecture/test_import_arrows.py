@@ -42,10 +42,12 @@ MAY_KNOW: dict[str, set[str]] = {
     "sampling": {"errors", "arrays", "defaults", *FILES, "statistics"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
-    "files": {*WORDS, "plugins", "units", "roughness", "topography", "statistics"},
+    "files": {*WORDS, "sealed", "plugins", "units", "roughness", "topography", "statistics"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
-    "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "statistics", "diagnose", "files", "forward", "version"},
-    "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
+    "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "topography", "statistics", "diagnose", "files",
+                "forward", "version"},
+    "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "topography", "problem",
+            "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     # faces
     "plot": {*WORDS, "units", "topography", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
@@ -71,7 +73,7 @@ HOMES: dict[str, set[str]] = {
     "dynesty": {"sampling"},
     "emcee": {"sampling"},
     "h5netcdf": {"fit"},
-    "h5py": {"sampling", "fit"},
+    "h5py": {"files", "sampling", "fit"},
     "jinja2": {"report"},
     "matplotlib": {"plot", "report"},
     "numpy": set(MAY_KNOW)

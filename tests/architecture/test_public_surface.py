@@ -77,7 +77,7 @@ def numeric_names(found: Any) -> list[str]:
 def test_top_level_names() -> None:
     assert skinbayes.__all__ == ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily",
                                  "Problem", "Quantity", "__version__", "build_joint_problem", "build_problem", "compare",
-                                 "emulated", "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem",
+                                 "emulated", "fit_spectrum", "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem",
                                  "load_problem", "register_engine", "register_forward_model", "register_noise",
                                  "register_quantity", "sample"]  # fmt: skip
     for name in skinbayes.__all__:

@@ -36,6 +36,8 @@ def reference(name, predicted, scale, spread, tails, discrepancy, observed):
         return stats.norm(predicted, width)
     if name == "student_t":
         return stats.t(tails, loc=predicted, scale=width)
+    if name == "gamma":
+        return stats.gamma(1 / width**2, scale=predicted * width**2)
     if name == "lognormal":
         return stats.lognorm(s=width, scale=predicted)
     return LogT(tails, np.log(predicted), width)
@@ -180,4 +182,4 @@ def test_unknown_names_and_missing_arguments():
 def test_pickles(name):
     family = noise_family(name)
     assert pickle.loads(pickle.dumps(family)) == family
-    assert family.normal == (not family.shape_parameters)
+    assert family.normal == (not family.shape_parameters and family.one_shape)

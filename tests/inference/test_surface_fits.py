@@ -1,0 +1,71 @@
+"""Surfaces found from their spectra: intervals that cover, and how far a surface reaches into friction."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import optimize
+from synthetic_spectra import made_up_surface, radial_average
+
+import skinbayes as sb
+from skinbayes.problem.spectrum_problem import spectrum_problem
+
+TRUE = ("rms_height", "hurst_exponent", "wavevector_rolloff")
+
+
+def posterior_quantiles(problem: sb.Problem, seed: int) -> dict[str, np.ndarray]:
+    """5, 50 and 95 % quantiles from one ensemble of walkers in ln of the parameters, without any of the package's rules."""
+    import emcee
+
+    rng = np.random.default_rng(seed)
+
+    def log_density(x: np.ndarray) -> np.ndarray:
+        # beyond the ends of the priors the density is zero
+        density = problem.log_posterior(np.exp(np.clip(x, -60, 60))) + x.sum(axis=-1)
+        return np.where(np.isfinite(density), density, -np.inf)
+
+    tried = np.log(problem.draw_prior(rng, 4000))
+    start = tried[np.argmax(log_density(tried))]
+    best = optimize.minimize(
+        lambda x: min(-float(log_density(x[None])[0]), 1e10),
+        start,
+        method="Nelder-Mead",
+        options={"maxiter": 2000},
+    ).x
+    walkers = best + 0.01 * rng.normal(size=(128, len(best)))
+    walkers = np.where(
+        np.isfinite(log_density(walkers))[:, None], walkers, best + 1e-4 * rng.normal(size=walkers.shape)
+    )
+    sampler = emcee.EnsembleSampler(*walkers.shape, log_density, vectorize=True)
+    sampler.random_state = np.random.RandomState(seed).get_state()
+    sampler.run_mcmc(walkers, 500, skip_initial_state_check=True)
+    draws = np.exp(sampler.get_chain(discard=200, flat=True))
+    return {
+        name: np.quantile(column, [0.05, 0.5, 0.95])
+        for name, column in zip(problem.names, draws.T, strict=True)
+    }
+
+
+def test_the_sampler_finds_what_quadrature_finds() -> None:
+    truth, _, surface = made_up_surface(np.random.default_rng(3), seed=3, size=128, pixel=4e-6)
+    measured = radial_average(surface, 12)
+    fit = sb.fit_spectrum(measured, seed=1, ess=400)
+    assert fit.converged
+    own = posterior_quantiles(spectrum_problem(measured), seed=1)
+    for name in TRUE:
+        low, _, high = own[name]
+        assert fit.quantiles(name) == pytest.approx(own[name], abs=0.12 * (high - low)), name
+        assert low - 0.5 * (high - low) < truth[name] < high + 0.5 * (high - low)
+
+
+@pytest.mark.slow
+def test_intervals_of_100_synthetic_maps_cover() -> None:
+    # 90 % intervals of 100 surfaces: outside 80 to 98 with probability 2e-3 for each of three parameters
+    rng, hits = np.random.default_rng(11), dict.fromkeys(TRUE, 0)
+    for number in range(100):
+        truth, _, surface = made_up_surface(rng, seed=number)
+        found = posterior_quantiles(spectrum_problem(radial_average(surface)), seed=number)
+        for name, value in truth.items():
+            hits[name] += bool(found[name][0] <= value <= found[name][2])
+    print(hits)
+    assert all(80 <= count <= 98 for count in hits.values()), hits
