@@ -1,0 +1,69 @@
+"""What we had to choose because the paper does not say it: windows, grids, where something counts as begun; no input of its."""
+
+from __future__ import annotations
+
+import numpy as np
+
+FILMS = np.geomspace(1e-7, 3e-5, 120)
+"""Mean films of Figs. 8 to 10, m; below 0.1 µm skin counts as dry (see `skinbayes.wetting.FILM_FLOOR`)."""
+
+HYDRODYNAMIC = np.geomspace(1e-3, 1e-1, 9)
+"""Speed times viscosity over which slopes of Fig. 11 are taken, N/m."""
+
+PRODUCTS = np.geomspace(1e-5, 0.3, 46)
+"""Speed times viscosity of the Stribeck curves of skin, N/m: plateau to where the film outgrows the ball's inlet."""
+
+RISING = 0.1
+"""Speed times viscosity from which skin is on the rising branch, N/m."""
+
+FILM_AT_EXIT = 1e-2
+"""Speed times viscosity at which the films on tissue with and without loss are compared, N/m."""
+
+HUMIDITIES = np.concatenate([np.linspace(0.05, 0.95, 46), 1.0 - np.geomspace(0.04, 1e-3, 18)])
+"""Relative humidities of Fig. 16, dimensionless."""
+
+DRY_AIR, MOIST_AIR = 0.05, 0.9
+"""Humidity taken for dry air, and the one below which the paper calls bridges negligible."""
+
+BEGUN = 0.1
+"""Fraction of the contact area that has yielded where yielding has begun."""
+
+DECADE = np.array([0.1, 10.0])
+"""Pressures over p0 between which the exponent of the area is taken."""
+
+LOADS = np.geomspace(0.05, 5.0, 5)
+"""Loads at which friction is compared, N: a decade to either side of 0.5 N."""
+
+TISSUES = (10e3, 40e3)
+"""Ends of the range of the macroscopic modulus in Sect. 1, Pa."""
+
+SMOOTHER = 0.1
+"""Roughness of the smoother surface over that of skin."""
+
+AXIS_RATIO = 2.0
+"""a/b of the ellipse at which Appendix B is evaluated."""
+
+KELVIN_RADIUS = 1e-6
+"""Size of the Kelvin radius at which Eq. 5 is evaluated, m."""
+
+SHEAR_RATE = 1e4
+"""Shear rate at which the viscosity law is evaluated, 1/s."""
+
+WIND = 1.0
+"""Speed of the air at which Eq. 8 is evaluated with its second term, m/s."""
+
+UNEQUAL_POISSON_RATIOS = (0.3, 0.45)
+"""Of layer and bulk, where Eq. 4 is evaluated with m and n that differ."""
+
+NEW = 1.01
+"""Friction over its dry, or wet, value from which it counts as another one."""
+
+TIMES = np.linspace(0.0, 700.0, 2801)
+"""Times of the drying curve, s."""
+
+MAGNIFICATIONS = np.geomspace(1.0, 1e6, 121)
+"""Magnifications of Fig. 6, q over the smallest wavevector."""
+
+TRANSITION, SHARPNESS = 0.89, 1.5
+"""Humidity at which the layer is half soft, and how abruptly, as in the shipped model; only the shape between the ends of
+Fig. 17 hangs on them."""
