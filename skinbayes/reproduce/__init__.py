@@ -1,5 +1,7 @@
 """The paper reproduced: every number, equation and comparison that it states, beside what skinbayes computes."""
 
+from skinbayes.reproduce.demonstration import Demonstration
+from skinbayes.reproduce.demonstrations import demonstrations
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import COMPUTED, Found
 from skinbayes.reproduce.rules import RULES, Rule
@@ -10,11 +12,13 @@ __all__ = [
     "COMPUTED",
     "RULES",
     "Compared",
+    "Demonstration",
     "Found",
     "Paper",
     "Rule",
     "Statement",
     "compared",
+    "demonstrations",
     "judged",
     "reproduction",
     "statements",

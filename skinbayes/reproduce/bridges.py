@@ -16,7 +16,7 @@ from skinbayes.phrases import number
 from skinbayes.reproduce.choices import FILMS, KELVIN_RADIUS, SMOOTHER
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import Found, computes
-from skinbayes.reproduce.statements import statements
+from skinbayes.reproduce.statements import printed_value
 from skinbayes.reproduce.words import growing, largest_change
 from skinbayes.wetting import CapillaryState, kelvin_gap, surface_tension_of_water
 
@@ -72,9 +72,8 @@ def _without(paper: Paper) -> float:
 @computes("separation-with")
 def _with(paper: Paper) -> Found:
     sharp = paper.strongest(closure="sharp")
-    printed = statements()["separation-with"].printed
-    assert printed is not None
-    asked = float(pressure_at_separation(printed.low, paper.surface, skin=paper.wet)) / paper.pressure - 1
+    printed = printed_value("separation-with")
+    asked = float(pressure_at_separation(printed, paper.surface, skin=paper.wet)) / paper.pressure - 1
     return Found(
         float(paper.strongest_bridges.mean_separation),
         f"With sharp gaps {number(1e6 * float(sharp.mean_separation))} µm. 10 µm ask for p_a = {number(asked, 2)} p0.",

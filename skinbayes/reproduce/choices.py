@@ -37,6 +37,12 @@ LOADS = np.geomspace(0.05, 5.0, 5)
 TISSUES = (10e3, 40e3)
 """Ends of the range of the macroscopic modulus in Sect. 1, Pa."""
 
+RELAXATION = 0.5
+"""Relaxation time of the other solid that is indented, s: that of a cycle of 2 × 2 s."""
+
+SOFTER = 6.0
+"""How much softer the skin is that is set beside skin with loss."""
+
 SMOOTHER = 0.1
 """Roughness of the smoother surface over that of skin."""
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from skinbayes.contact import (
+    AREA_CORRECTION,
     LayeredSkin,
     elastoplastic_contact_area,
     layered_sphere_contact,
@@ -22,7 +23,7 @@ from skinbayes.reproduce import formulas
 from skinbayes.reproduce.choices import BEGUN, SHARPNESS, TRANSITION, UNEQUAL_POISSON_RATIOS
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import Found, computes
-from skinbayes.reproduce.statements import statements
+from skinbayes.reproduce.statements import printed_value
 from skinbayes.wetting import young_modulus_at_humidity
 
 
@@ -84,12 +85,11 @@ def correction_of_area(paper: Paper, wanted: float) -> float:
 @computes("wet-area")
 def _wet(paper: Paper) -> Found:
     plain = float(persson_contact_area(paper.pressure, paper.variance(paper.wet)))
-    printed = statements()["wet-area"].printed
-    assert printed is not None
+    printed = printed_value("wet-area")
     return Found(
         paper.wet_area,
-        f"With the usual Yang–Persson correction, γ = 0.42, which the paper does not mention. Its Eqs. 2 and 3 alone give "
-        f"{number(plain)}; γ = {number(correction_of_area(paper, printed.low))} gives the printed number.",
+        f"With the usual Yang–Persson correction, γ = {AREA_CORRECTION:g}, which the paper does not mention. Its Eqs. 2 "
+        f"and 3 alone give {number(plain)}; γ = {number(correction_of_area(paper, printed))} gives the printed number.",
     )
 
 
@@ -145,9 +145,8 @@ def _onset(paper: Paper) -> Found:
 
 @computes("wavelength-of-onset")
 def _wavelength(paper: Paper) -> float:
-    printed = statements()["plastic-onset"].printed
-    assert printed is not None
-    return 2 * np.pi / printed.low
+    printed = printed_value("plastic-onset")
+    return 2 * np.pi / printed
 
 
 @computes("shear-stress-dry")

@@ -13,7 +13,7 @@ from skinbayes.phrases import number
 from skinbayes.reproduce.choices import NEW, TIMES, WIND
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import Found, computes
-from skinbayes.reproduce.statements import statements
+from skinbayes.reproduce.statements import printed_value
 from skinbayes.wetting import (
     DryingCurve,
     drying_curve,
@@ -26,12 +26,6 @@ from skinbayes.wetting import (
 
 ZERO_CELSIUS = 273.15
 """K."""
-
-
-def _printed(name: str) -> float:
-    printed = statements()[name].printed
-    assert printed is not None
-    return printed.low
 
 
 def hertz_diameter(paper: Paper, load: str) -> float:
@@ -47,7 +41,7 @@ def _film(paper: Paper) -> Found:
 
     wide = number(1e6 * film(hertz_diameter(paper, "ball-load")))
     return Found(
-        film(_printed("contact-width")),
+        film(printed_value("contact-width")),
         f"The volume over the stated length and width; {wide} µm over the width of the Hertz contact.",
     )
 
@@ -102,7 +96,7 @@ def _rate(paper: Paper) -> float:
 
 @computes("time-of-droplet")
 def _time_of_droplet(paper: Paper) -> float:
-    return _printed("droplet-film") / paper.evaporation
+    return printed_value("droplet-film") / paper.evaporation
 
 
 def curve(
@@ -114,7 +108,7 @@ def curve(
 
 def _drying(paper: Paper, angle: str, closure: str) -> dict[str, Any]:
     return {
-        "initial_film": _printed("droplet-film"),
+        "initial_film": printed_value("droplet-film"),
         "evaporation_rate": paper.evaporation,
         "contact": paper.film_contact(angle, closure),
         "frictional_shear_stress": paper["shear-stress-used"],
@@ -131,19 +125,19 @@ def _until_dry(paper: Paper) -> float:
 
 @computes("time-of-bridges")
 def _time(paper: Paper) -> Found:
-    rate = paper.evaporation
-    film = _printed("time-of-bridges") * rate
+    rate, rounded = paper.evaporation, printed_value("evaporation-rate")
+    film = printed_value("time-of-bridges") * rate
     return Found(
-        _printed("flooding-film-abstract") / rate,
-        f"At the rounded 1.7e-7 m/s it would be {number(_printed('flooding-film-abstract') / _printed('evaporation-rate'))} s; "
-        f"76 s belong to {number(1e6 * film)} µm, or to the 13 µm of the mean separation at the rounded rate "
-        f"({number(_printed('separation-without') / _printed('evaporation-rate'))} s).",
+        printed_value("flooding-film-abstract") / rate,
+        f"{number(printed_value('flooding-film-abstract') / rounded)} s at the rounded 1.7e-7 m/s. 76 s belong to "
+        f"{number(1e6 * film)} µm, or to the 13 µm of the mean separation at the rounded rate "
+        f"({number(printed_value('separation-without') / rounded)} s).",
     )
 
 
 @computes("time-of-bridges-abstract")
 def _time_abstract(paper: Paper) -> float:
-    return _printed("flooding-film-abstract") / paper.evaporation
+    return printed_value("flooding-film-abstract") / paper.evaporation
 
 
 @computes("time-of-enhanced-friction")
@@ -169,8 +163,8 @@ def _eq8_wind(paper: Paper) -> Found:
 
 def _equation_8(paper: Paper, air_speed: float) -> Found:
     skin, air, heat = (
-        _printed("vapour-pressure-skin"),
-        _printed("vapour-pressure-air"),
+        printed_value("vapour-pressure-skin"),
+        printed_value("vapour-pressure-air"),
         paper["latent-heat-used"],
     )
     found = evaporation_rate_from_pressures(skin, air, air_speed=air_speed, latent_heat=heat)

@@ -15,6 +15,7 @@ from skinbayes.contact import (
     ConstantLossMaterial,
     EquivalentCylinder,
     LayeredSkin,
+    ViscoelasticMaterial,
     cylinder_of_sphere,
     indentation_cycle,
     line_contact,
@@ -236,17 +237,17 @@ class Paper:
         """tan δ, the same at all frequencies, with which the quoted indentation loses what it lost."""
 
         def miss(tangent: float) -> float:
-            return self.indentation(tangent)[0] - self["indentation-loss"]
+            return self.indentation(self.tissue(tangent))[0] - self["indentation-loss"]
 
         return float(brentq(miss, 0.01, 0.9, xtol=1e-4))
 
-    def indentation(self, tangent: float) -> tuple[float, float]:
-        """Loss over work, and set in m, of the quoted indentation of tissue with a loss tangent."""
+    def indentation(self, material: ViscoelasticMaterial | ConstantLossMaterial) -> tuple[float, float]:
+        """Loss over work, and set in m, of the quoted indentation of a material."""
         cycle = indentation_cycle(
             self["indentation-speed"],
             self["indentation-depth"],
             sphere_radius=self["ball-radius"],
-            material=self.tissue(tangent),
+            material=material,
         )
         return cycle.loss_fraction, cycle.residual_depth
 

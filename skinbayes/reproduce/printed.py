@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from math import floor, log10
 
 from skinbayes.errors import InputError
 from skinbayes.units import NUMBER, parse_quantity
@@ -27,6 +26,8 @@ class Printed:
     reading : "digits", "about", "order" or "range": the name of a rule
     low, high : the number, the same twice, or the ends of a range
     step : size of one unit of the last printed digit
+    unit : as printed; empty for a bare number
+    scale : size of one such unit
     """
 
     text: str
@@ -34,6 +35,8 @@ class Printed:
     low: float
     high: float
     step: float
+    unit: str
+    scale: float
 
     @property
     def value(self) -> float | tuple[float, float]:
@@ -75,16 +78,17 @@ def read_printed(text: str, unit: str, *, where: str) -> Printed:
         least = 0.0 if name.endswith(" or less") else _FEW[0]
         name = name.removesuffix(" or less")
         low, high, step = (_si(f"{number}", name, unit, where) for number in (least, _FEW[1], 1.0))
-        return Printed(text=text, reading="range", low=low, high=high, step=step)
+        return Printed(text=text, reading="range", low=low, high=high, step=step, unit=name, scale=step)
     first, last = form["low"], form["high"] or form["low"]
     low, high = (_si(number, name, unit, where) for number in (first, last))
     step = abs(_si(repr(_last_digit(last)), name, unit, where, difference=True))
+    scale = _si("1", name, unit, where, difference=True)
     reading = sign or "digits"
     if form["high"]:
         reading = "range"
     elif sign == "roughly":
         reading = "order" if len(_digits(first)) == 1 else "about"
-    return Printed(text=text, reading=reading, low=low, high=high, step=step)
+    return Printed(text=text, reading=reading, low=low, high=high, step=step, unit=name, scale=scale)
 
 
 def _si(number: str, name: str, unit: str, where: str, difference: bool = False) -> float:
@@ -108,14 +112,3 @@ def _last_digit(number: str) -> float:
     decimals = len(mantissa.partition(".")[2])
     zeros = 0 if "." in mantissa else len(mantissa) - len(mantissa.rstrip("0"))
     return float(f"1e{zeros - decimals + int(power or 0)}")
-
-
-def digits_of(value: float, step: float) -> int:
-    """Digits that a value has down to a step: at least three, so that a difference can be seen.
-
-    Examples
-    --------
-    >>> digits_of(6.48e-4, 1e-6), digits_of(13.5e-6, 1e-6), digits_of(2.73, 0.1)
-    (3, 3, 3)
-    """
-    return max(3, floor(log10(abs(value) / step)) + 1) if value and step else 3

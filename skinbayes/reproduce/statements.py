@@ -51,6 +51,13 @@ def statements() -> dict[str, Statement]:
     return {found.id: found for found in map(_statement, load_reference(SOURCE).rows)}
 
 
+def printed_value(name: str) -> float:
+    """The printed number of a statement, SI; the lower end of a range."""
+    printed = statements()[name].printed
+    assert printed is not None, f"{name} is no number"
+    return printed.low
+
+
 def _statement(row: object) -> Statement:
     cells = {name: "" if value is None else str(value) for name, value in dict(row).items()}  # type: ignore[call-overload]
     words, unit = cells.pop("printed"), cells["unit"]

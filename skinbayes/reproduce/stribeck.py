@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +10,12 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 from skinbayes.arrays import FloatArray
-from skinbayes.contact import ViscoelasticMaterial, ViscoelasticSkin, viscoelastic_line_contact
+from skinbayes.contact import (
+    ViscoelasticMaterial,
+    ViscoelasticSkin,
+    standard_linear_solid,
+    viscoelastic_line_contact,
+)
 from skinbayes.lubrication import (
     LubricatedFilms,
     StribeckCurve,
@@ -24,7 +28,7 @@ from skinbayes.lubrication import (
     viscoelastic_stribeck_curve,
 )
 from skinbayes.phrases import number
-from skinbayes.reproduce.choices import FILM_AT_EXIT
+from skinbayes.reproduce.choices import FILM_AT_EXIT, RELAXATION, SOFTER
 from skinbayes.reproduce.drying import hertz_diameter
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import Found, computes
@@ -148,10 +152,23 @@ def _hysteresis(paper: Paper) -> Found:
 @computes("indentation-set")
 def _set(paper: Paper) -> Found:
     return Found(
-        paper.indentation(paper.loss_tangent)[1],
-        "Of a solid of constant loss angle that loses 25 %. One relaxation time of half a second keeps 0.55 mm "
-        "(docs/elastic-or-viscoelastic.md).",
+        paper.indentation(paper.tissue(paper.loss_tangent))[1],
+        f"Of a solid of constant loss angle, tan δ = {number(paper.loss_tangent)}. One relaxation time of {RELAXATION:g} s that "
+        f"loses as much keeps {number(1e3 * _set_of_one_time(paper))} mm.",
     )
+
+
+def _set_of_one_time(paper: Paper) -> float:
+    """Set, m, of a solid with one relaxation time that loses what the indentation lost."""
+
+    def material(log_ratio: float) -> ViscoelasticMaterial:
+        stiff = paper["young-modulus-bulk"] * float(np.exp(log_ratio))
+        return standard_linear_solid(paper["young-modulus-bulk"], stiff, relaxation_time=RELAXATION)
+
+    def miss(log_ratio: float) -> float:
+        return paper.indentation(material(log_ratio))[0] - paper["indentation-loss"]
+
+    return paper.indentation(material(float(brentq(miss, 0.01, 1.0, xtol=1e-4))))[1]
 
 
 def _decades(paper: Paper) -> FloatArray:
@@ -237,19 +254,27 @@ def shifts(paper: Paper) -> tuple[float, float]:
 
 @computes("loss-shifts-down")
 def _shift(paper: Paper) -> Found:
+    half = shifts(paper)[0]
     return Found(
-        shifts(paper)[0],
+        half,
         "The exit opens as the paper says, but pressure moves to the inlet and the film as a whole gets thinner: loss moves the "
-        "curve the other way, and by a tenth of a decade where 1 to 1.3 are asked for.",
+        f"curve the other way, by {number(np.log10(half), 2)} decades, where one (abstract) or 1.3 (text) down are asked for.",
     )
+
+
+def softer_features(paper: Paper) -> Features:
+    """Features of elastic skin whose layer and tissue are both six times softer."""
+    softer = paper.with_values(
+        young_modulus_bulk=paper["young-modulus-bulk"] / SOFTER,
+        young_modulus_layer_wet=paper["young-modulus-layer-wet"] / SOFTER,
+    )
+    curve = paper.once("softer skin", lambda: skin_curve(softer, "line", largest_strain=np.inf))
+    return features(paper.products, curve.friction_coefficient)
 
 
 @computes("loss-widens-hydrodynamic")
 def _minimum(paper: Paper) -> Found:
-    softer = replace(paper, other=paper.other | {"young-modulus-bulk": paper["young-modulus-bulk"] / 6})
-    softer = softer.with_values(young_modulus_layer_wet=paper["young-modulus-layer-wet"] / 6)
-    plain = features(paper.products, plain_curve(paper).friction_coefficient)
-    soft = features(paper.products, skin_curve(softer, "line", largest_strain=np.inf).friction_coefficient)
+    plain, soft = features(paper.products, plain_curve(paper).friction_coefficient), softer_features(paper)
     return Found(
         shifts(paper)[1],
         f"As above. Layer and tissue six times softer would move half of the plateau to {number(soft.half / plain.half, 2)} and "

@@ -9,10 +9,9 @@ from skinbayes.phrases import number
 from skinbayes.reproduce import formulas
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import Found, computes
-from skinbayes.reproduce.statements import statements
+from skinbayes.reproduce.statements import printed_value
 from skinbayes.roughness import (
     SelfAffineSpectrum,
-    named_surface,
     rms_height,
     rms_slope,
     total_area_ratio,
@@ -38,7 +37,7 @@ def _height(paper: Paper) -> Found:
 
 @computes("rms-slope-of-four-numbers")
 def _printed_slope(paper: Paper) -> Found:
-    missing = _printed(paper, "rms-slope-in-use") / float(rms_slope(paper.printed_surface))
+    missing = printed_value("rms-slope-in-use") / float(rms_slope(paper.printed_surface))
     return Found(
         float(rms_slope(paper.printed_surface)),
         f"The four parameters and the slope do not belong together: heights at large wavevectors are {number(missing)} times "
@@ -65,7 +64,7 @@ def _slope(paper: Paper) -> Found:
 
 @computes("total-area-in-use")
 def _area(paper: Paper) -> float:
-    return float(total_area_ratio(_printed(paper, "rms-slope-in-use")))
+    return float(total_area_ratio(printed_value("rms-slope-in-use")))
 
 
 @computes("eq-1")
@@ -74,27 +73,21 @@ def _normalised(paper: Paper) -> Found:
     return Found(mean_square / float(rms_height(paper.surface)) ** 2, formula=1.0)
 
 
-def _printed(paper: Paper, name: str) -> float:
-    printed = statements()[name].printed
-    assert printed is not None
-    return printed.low
-
-
 def rolloff_of_slope(paper: Paper) -> float:
     """Wavevector up to which a plateau must reach for the printed height to have the printed slope, 1/m."""
 
     def miss(log_q: float) -> float:
-        return float(rms_slope(_with(paper, wavevector_rolloff=np.exp(log_q)))) - _printed(
-            paper, "rms-slope-in-use"
+        return float(rms_slope(with_other(paper, wavevector_rolloff=np.exp(log_q)))) - printed_value(
+            "rms-slope-in-use"
         )
 
-    return float(np.exp(brentq(miss, np.log(paper["wavevector-min"]), np.log(1e5))))
+    return float(np.exp(brentq(miss, np.log(1.001 * paper["wavevector-min"]), np.log(1e5))))
 
 
 def height_of_slope(paper: Paper) -> float:
     """Height, m, that has the printed slope without a plateau."""
     slope = float(rms_slope(paper.printed_surface))
-    return paper["rms-height-printed"] * _printed(paper, "rms-slope-in-use") / slope
+    return paper["rms-height-printed"] * printed_value("rms-slope-in-use") / slope
 
 
 def smallest_wavevector_of_slope(paper: Paper) -> float:
@@ -102,20 +95,16 @@ def smallest_wavevector_of_slope(paper: Paper) -> float:
 
     def miss(log_q: float) -> float:
         q = float(np.exp(log_q))
-        surface = _with(paper, wavevector_min=q, wavevector_rolloff=q)
-        return float(rms_slope(surface)) - _printed(paper, "rms-slope-in-use")
+        surface = with_other(paper, wavevector_min=q, wavevector_rolloff=q)
+        return float(rms_slope(surface)) - printed_value("rms-slope-in-use")
 
-    return float(np.exp(brentq(miss, np.log(paper["wavevector-min"]), np.log(1e5))))
+    return float(np.exp(brentq(miss, np.log(1.001 * paper["wavevector-min"]), np.log(1e5))))
 
 
-def _with(paper: Paper, **other: float) -> SelfAffineSpectrum:
+def with_other(paper: Paper, **other: float) -> SelfAffineSpectrum:
+    """The surface of the four printed parameters with others in place of some, SI."""
     printed = {
         name: float(getattr(paper.printed_surface, name))
         for name in ("rms_height", "hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
     }
     return SelfAffineSpectrum(**(printed | {name: float(value) for name, value in other.items()}))
-
-
-def sharp_surface() -> SelfAffineSpectrum:
-    """The repair without a plateau."""
-    return named_surface("paper_reference_sharp")
