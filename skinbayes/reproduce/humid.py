@@ -10,6 +10,7 @@ from skinbayes.phrases import number
 from skinbayes.reproduce.choices import DRY_AIR, HUMIDITIES, MOIST_AIR
 from skinbayes.reproduce.paper import Paper
 from skinbayes.reproduce.registry import Found, computes
+from skinbayes.reproduce.rules import QUARTER
 from skinbayes.reproduce.words import farthest_from_one, largest_change
 from skinbayes.wetting import CapillaryState, capillary_state_in_humid_air
 
@@ -50,7 +51,7 @@ def _soft(paper: Paper) -> Found:
     sharp = humid_skin(paper, SOFT, DRY_AIR, "sharp").relative_contact_area
     return Found(
         float(area),
-        f"log10 A/A0 = {number(float(np.log10(area)), 2)}, which is nearly 0 on the axis of Fig. 16; with sharp gaps "
+        f"log10 A/A0 = −{number(-float(np.log10(area)), 2)}, which is nearly 0 on the axis of Fig. 16; with sharp gaps "
         f"A/A0 = {number(float(sharp))}.",
     )
 
@@ -71,7 +72,7 @@ def _stiff(paper: Paper) -> Found:
     logs = np.log10(area)
     return Found(
         farthest_from_one(area / np.exp(np.log(area).mean())),
-        f"log10 A/A0 from {number(float(logs.min()))} to {number(float(logs.max()))}.",
+        f"log10 A/A0 from −{number(-float(logs.min()))} to −{number(-float(logs.max()))}.",
     )
 
 
@@ -86,8 +87,10 @@ def _stiff_below(paper: Paper) -> FloatArray:
 
 
 @computes("stiff-is-load")
-def _load(paper: Paper) -> float:
-    return farthest_from_one(_stiff_below(paper))
+def _load(paper: Paper) -> Found:
+    ratios = _stiff_below(paper)
+    middle = HUMIDITIES[HUMIDITIES < MOIST_AIR][np.argmin(np.abs(ratios[:-1] - QUARTER))]
+    return Found(farthest_from_one(ratios), f"Below 1.25 from {number(100 * float(middle), 2)} % on; above in drier air.")
 
 
 @computes("bridges-below-90")

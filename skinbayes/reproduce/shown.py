@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from skinbayes.phrases import number
+from skinbayes.phrases import number, power_of_ten
 from skinbayes.reproduce.table import Compared
 from skinbayes.units import format_quantity
 
@@ -27,10 +27,15 @@ def printed_text(words: str) -> str:
     >>> printed_text("≈ 1.7e-7 m/s"), printed_text("∼ 1e-3"), printed_text("22.4 um"), printed_text("≈ -0.04")
     ('≈ 1.7 × 10⁻⁷ m/s', '∼ 10⁻³', '22.4 µm', '≈ −0.04')
     """
-    text = _POWER_OF_TEN.sub(lambda m: number(float(m[0]), 9), words)
+    text = _POWER_OF_TEN.sub(_raised, words)
     return (
         re.sub(r"(?<![\w⁻])-(?=[0-9])", "−", text).replace("um", "µm").replace("^3", "³").replace("deg", "°")
     )
+
+
+def _raised(match: re.Match[str]) -> str:
+    power = power_of_ten(int(match[2]))
+    return power if match[1] == "1" else f"{match[1]} × {power}"
 
 
 def computed_text(row: Compared) -> str:

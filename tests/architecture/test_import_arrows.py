@@ -46,10 +46,12 @@ MAY_KNOW: dict[str, set[str]] = {
     "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "statistics", "diagnose", "files", "forward", "version"},
     "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "problem", "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
+    # the paper beside the physics
+    "reproduce": {*WORDS, "units", "files", *PHYSICS},
     # faces
-    "plot": {*WORDS, "units", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot"},
-    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "version"},
+    "plot": {*WORDS, "units", "reproduce", *PHYSICS, "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
+    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot", "reproduce"},
+    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "reproduce", "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
@@ -88,7 +90,7 @@ HOMES: dict[str, set[str]] = {
     "pydantic": {"files", "fit"},
     "rich": {"cli"},
     "tomlkit": {"files"},
-    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot"},
+    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot", "reproduce"},
     "xarray": {"fit", "plot", "report"},
 }
 """Library to the floors that may import it; a library that is not here is not a dependency."""
