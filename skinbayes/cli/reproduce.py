@@ -18,7 +18,9 @@ HEADERS = ("what and where", "paper", "skinbayes", "off by", "agrees")
 
 @click.command()
 @click.option("--figures", metavar="DIR", help="Also draw the paper's figures into a folder (PDF and PNG).")
-@click.option("-o", "--output", metavar="FILE.html", help="Also write a page with everything, figures included.")
+@click.option(
+    "-o", "--output", metavar="FILE.html", help="Also write a page with everything, figures included."
+)
 @json_option
 def reproduce(figures: str | None, output: str | None, as_json: bool) -> int:
     """The paper's numbers, equations and statements, printed against computed.
@@ -39,7 +41,7 @@ def reproduce(figures: str | None, output: str | None, as_json: bool) -> int:
     shown = demonstrations(paper)
     drawn = [] if figures is None else _draw(paper, Path(figures))
     if page is not None:
-        from skinbayes.report.reproduction_page import write_reproduction
+        from skinbayes.report import write_reproduction
 
         with counted_progress("figures") as progress:
             write_reproduction(rows, shown, paper, page, progress)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from base64 import b64encode
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.plot.style import look
@@ -42,11 +43,17 @@ def pictures(fit: Fit) -> dict[str, dict[str, Any]]:
 
 def picture(fit: Fit | Comparison, drawing: Drawing) -> dict[str, Any]:
     """Texts of a drawing and its images for screens and for phones."""
-    wide = drawing.draw(fit, width=None)
-    return vars(drawing) | {
-        "alternative": drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}",
+    told = drawing.alternative if fit.converged else f"NOT CONVERGED. {drawing.alternative}"
+    texts = vars(drawing) | {"alternative": told}
+    return placed(texts, drawing.draw(fit, width=None), drawing.draw(fit, width=NARROW))
+
+
+def placed(texts: Mapping[str, Any], wide: Figure, narrow: Figure) -> dict[str, Any]:
+    """Key, heading, alternative and caption of a figure with its images for screens and for phones."""
+    return {
+        **texts,
         "wide": _image(wide),
-        "narrow": _image(drawing.draw(fit, width=NARROW)),
+        "narrow": _image(narrow),
         "large": float(wide.get_size_inches()[0]) > LARGE,  # may be wider than the text
     }
 

@@ -73,3 +73,20 @@ MAGNIFICATIONS = np.geomspace(1.0, 1e6, 121)
 TRANSITION, SHARPNESS = 0.89, 1.5
 """Humidity at which the layer is half soft, and how abruptly, as in the shipped model; only the shape between the ends of
 Fig. 17 hangs on them."""
+
+CHOICES = (
+    "The surface is paper_reference, the printed parameters with a plateau up to q_r = 6.345e3 1/m, and the contact area has the "
+    "Yang–Persson correction with γ = 0.42, unless a row says otherwise.",
+    f"Stribeck curves go from {PRODUCTS[0]:g} to {PRODUCTS[-1]:g} N/m; the rising branch begins at {RISING:g} N/m.",
+    f"Exponents of Fig. 11 are taken from {HYDRODYNAMIC[0]:g} to {HYDRODYNAMIC[-1]:g} N/m, on smooth bodies.",
+    f"Films of water go down to {FILMS[0] * 1e6:g} µm, below which skin counts as dry; its surface tension is that of "
+    "water in the room.",
+    f"Humidity goes from {100 * HUMIDITIES[0]:g} to {100 * HUMIDITIES[-1]:g} %; dry air is the lower end.",
+    f"Yielding has begun where {100 * BEGUN:g} % of the contact area have yielded.",
+    f"The area is followed by a decade to either side of p0, friction from {LOADS[0]:g} to {LOADS[-1]:g} N, tissue from "
+    f"{TISSUES[0] / 1e3:g} to {TISSUES[1] / 1e3:g} kPa.",
+    "Loss of the tissue is a constant loss angle for which the quoted indentation loses 25 %, with the modulus of elastic "
+    "tissue at the frequency v/b of the contact, v the geometric mean of the printed speeds.",
+    f"Appendix B is evaluated at a/b = {AXIS_RATIO:g}, Eq. 4 where q d = 1, Eq. 8 in still air and at {WIND:g} m/s.",
+)
+"""The choices in words."""

@@ -90,7 +90,10 @@ def _stiff_below(paper: Paper) -> FloatArray:
 def _load(paper: Paper) -> Found:
     ratios = _stiff_below(paper)
     middle = HUMIDITIES[HUMIDITIES < MOIST_AIR][np.argmin(np.abs(ratios[:-1] - QUARTER))]
-    return Found(farthest_from_one(ratios), f"Below 1.25 from {number(100 * float(middle), 2)} % on; above in drier air.")
+    return Found(
+        farthest_from_one(ratios),
+        f"Below 1.25 from {number(100 * float(middle), 2)} % on; above in drier air.",
+    )
 
 
 @computes("bridges-below-90")
