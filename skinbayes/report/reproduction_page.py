@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinbayes.files import load_reference
 from skinbayes.plot.paper import FIGURES
+from skinbayes.plot.paper_overview import OVERVIEW, plot_overview
 from skinbayes.report.figures import NARROW, placed
 from skinbayes.report.rendering import rendered, write_whole
 from skinbayes.reproduce import RULES, statements
@@ -85,6 +86,7 @@ def _context(
             {"name": name, "rows": [row for row in shown if row["group"] == name]}
             for name in dict.fromkeys(row["group"] for row in shown)
         ],
+        "overview": placed(OVERVIEW, plot_overview(rows), plot_overview(rows, NARROW)),
         "pictures": pictures,
         "rules": [rule.sentence for rule in RULES.values()],
         "inputs": [one for one in stated if one["role"] == "input"],
@@ -95,7 +97,9 @@ def _context(
 
 def _row(row: Compared) -> dict[str, Any]:
     stated = row.statement
+    words = {"number": "printed ", "claim": "the paper: "}.get(stated.role, "")
     return {
+        "stated": words + paper_text(row),
         "id": stated.id,
         "group": stated.group,
         "description": stated.description,

@@ -74,7 +74,7 @@ def _slope_cylinder(paper: Paper) -> Found:
     local = np.diff(np.log(friction)) / np.diff(np.log(HYDRODYNAMIC))
     return Found(
         _exponent(friction),
-        f"Smooth, from ηv = 1e-3 to 1e-1 N/m; the local exponent drifts from {number(local[0], 2)} to {number(local[-1], 2)}.",
+        f"Smooth, from ηv = 0.001 to 0.1 N/m; the local exponent drifts from {number(local[0], 2)} to {number(local[-1], 2)}.",
     )
 
 
@@ -93,7 +93,7 @@ def _like(paper: Paper) -> Found:
     ratio = _sphere(paper) / smooth_cylinder(paper)
     return Found(
         farthest_from_one(ratio),
-        f"{number(ratio[0])} at ηv = 1e-3 N/m, {number(ratio[-1])} at 1e-1 N/m: the drag around the contact.",
+        f"{number(ratio[0])} at ηv = 0.001 N/m, {number(ratio[-1])} at 0.1 N/m: the drag around the contact.",
     )
 
 

@@ -129,7 +129,7 @@ def _time(paper: Paper) -> Found:
     film = printed_value("time-of-bridges") * rate
     return Found(
         printed_value("flooding-film-abstract") / rate,
-        f"{number(printed_value('flooding-film-abstract') / rounded)} s at the rounded 1.7e-7 m/s. 76 s belong to "
+        f"{number(printed_value('flooding-film-abstract') / rounded)} s at the rounded 1.7 × 10⁻⁷ m/s. 76 s belong to "
         f"{number(1e6 * film)} µm, or to the 13 µm of the mean separation at the rounded rate "
         f"({number(printed_value('separation-without') / rounded)} s).",
     )

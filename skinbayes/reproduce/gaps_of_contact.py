@@ -54,9 +54,6 @@ def square(paper: Paper) -> Demonstration:
     )
 
 
-_PRINTED = ("rms-slope-in-use", "total-area-in-use", "wet-area", "separation-without")
-
-
 def surface(paper: Paper) -> Demonstration:
     """Four parameters and the slope beside them."""
     rolloff, height, smallest = (
@@ -79,10 +76,16 @@ def surface(paper: Paper) -> Demonstration:
         text="Slope 2.8 and area 2.7 A0 agree with each other and not with the four parameters; heights at large "
         "wavevectors have to be √10 larger. Three repairs do that, and give the same slope, contact and separation. Which "
         "of them the authors had cannot be told from these; skinbayes uses the plateau, which leaves h_rms as printed.",
-        headers=("surface", "rms slope", "A_tot/A0", "A/A0, wet", "ū(p0)"),
+        headers=("surface", "rms slope", "A_tot/A0", "10⁴ A/A0, wet", "ū(p0)"),
         rows=[
             *((name, *_numbers(surface, paper)) for name, surface in surfaces.items()),
-            ("printed", *(printed_text(statements()[name].words) for name in _PRINTED)),
+            (
+                "printed",
+                number(printed_value("rms-slope-in-use")),
+                number(printed_value("total-area-in-use")),
+                number(1e4 * printed_value("wet-area")),
+                printed_text(statements()["separation-without"].words),
+            ),
         ],
     )
 
@@ -94,7 +97,7 @@ def _numbers(surface: SelfAffineSpectrum, paper: Paper) -> tuple[str, ...]:
     return (
         number(slope),
         number(float(total_area_ratio(slope))),
-        number(float(area)),
+        number(1e4 * float(area)),
         f"{number(1e6 * separation)} µm",
     )
 
@@ -121,12 +124,12 @@ def wet_area(paper: Paper) -> Demonstration:
         id="wet-area",
         title="The wet contact area is not that of Eqs. 2 and 3",
         where="Sect. 4; Fig. 6",
-        text="The equations as printed give two thirds of the printed area. The Yang–Persson correction, which takes "
-        "stress only where surfaces touch, gives it at a γ that is a usual one; the paper does not mention it.",
-        headers=("theory", "A/A0 at 6.83 kPa", "over printed"),
+        text="The equations as printed give two thirds of the printed area. The Yang–Persson correction, which the "
+        "paper does not mention, gives it at a usual γ. Neither E0 for E0* nor the four printed parameters do.",
+        headers=("theory", "10⁴ A/A0 at 6.83 kPa", "over printed"),
         rows=[
-            *((name, number(area), number(area / printed)) for name, area in areas.items()),
-            ("printed", number(printed), "1"),
+            *((name, number(1e4 * area), number(area / printed)) for name, area in areas.items()),
+            ("printed", number(1e4 * printed), "1"),
         ],
     )
 

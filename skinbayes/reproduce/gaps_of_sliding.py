@@ -45,6 +45,6 @@ def flow(paper: Paper) -> Demonstration:
         headers=("factors", "half of the plateau at", "smallest friction", "at 0.3 N/m"),
         rows=(
             ("trivial", f"{number(plain.half)} N/m", number(plain.least), number(float(trivial[-1]))),
-            ("of the gaps", f"{number(rough.half)} N/m", number(rough.least), f"{number(rising)} times"),
+            ("of the gaps", f"{number(rough.half)} N/m", number(rough.least), f"{number(rising)} times that"),
         ),
     )
