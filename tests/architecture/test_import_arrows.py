@@ -49,9 +49,12 @@ MAY_KNOW: dict[str, set[str]] = {
     # the paper beside the physics
     "reproduce": {*WORDS, "units", "files", *PHYSICS},
     # faces
-    "plot": {*WORDS, "units", "reproduce", *PHYSICS, "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
-    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot", "reproduce"},
-    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "reproduce", "version"},
+    "plot": {*WORDS, "atomic", "units", "reproduce", "roughness", "statistics", "diagnose", "forward", "problem", "fit",
+             "comparison"},
+    "report": {*WORDS, "atomic", "units", "statistics", "diagnose", "files", "forward", "problem", "fit", "comparison", "plot",
+               "reproduce"},
+    "cli": {*WORDS, "atomic", "units", "files", "forward", "problem", "fit", "comparison", "plot", "report", "reproduce",
+            "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
