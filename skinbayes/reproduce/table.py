@@ -68,7 +68,14 @@ class Compared:
 
 
 def compared(statement: Statement, paper: Paper) -> Compared:
-    """Compute what a statement is about, and judge it."""
+    """Compute what a statement is about, and judge it.
+
+    Examples
+    --------
+    >>> row = compared(statements()["nominal-pressure"], Paper())
+    >>> row.statement.words, round(row.computed), row.agrees
+    ('6.83 kPa', 6829, True)
+    """
     found = COMPUTED[statement.id](paper)
     return judged(statement, found if isinstance(found, Found) else Found(float(found)))
 
@@ -105,13 +112,6 @@ def reproduction(
     -------
     list of Compared
         One for each statement that is computed, in the order of the data set
-
-    Examples
-    --------
-    >>> rows = {row.statement.id: row for row in reproduction()}
-    >>> row = rows["nominal-pressure"]
-    >>> row.statement.words, round(row.computed), row.agrees
-    ('6.83 kPa', 6829, True)
     """
     cases = paper or Paper()
     wanted = [found for found in statements().values() if found.role in COMPARED]
