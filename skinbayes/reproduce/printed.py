@@ -93,9 +93,7 @@ def read_printed(text: str, unit: str, *, where: str) -> Printed:
 
 def _si(number: str, name: str, unit: str, where: str, difference: bool = False) -> float:
     if name == unit:
-        return float(
-            number
-        )  # also of units that nothing else has, such as that of the constant of a power law
+        return float(number)  # the constant of a power law has a unit that no converter knows
     return parse_quantity(f"{number} {name}".strip(), unit, where=where, difference=difference)
 
 
