@@ -29,7 +29,11 @@ def printed_text(words: str) -> str:
     """
     text = _POWER_OF_TEN.sub(_raised, words)
     return (
-        re.sub(r"(?<![\w⁻])-(?=[0-9])", "−", text).replace("um", "µm").replace("^3", "³").replace("deg", "°")
+        re.sub(r"(?<![\w⁻])-(?=[0-9])", "−", text)
+        .replace("um", "µm")
+        .replace("^3", "³")
+        .replace(" degC", " °C")
+        .replace(" deg", "°")
     )
 
 
