@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from skinbayes.reproduce import gaps_of_contact, gaps_of_sliding, gaps_of_water
+from skinbayes.reproduce import gap_of_surface, gaps_of_contact, gaps_of_sliding, gaps_of_water
 from skinbayes.reproduce.demonstration import Demonstration
 from skinbayes.reproduce.paper import Paper
 
 ALL: tuple[Callable[[Paper], Demonstration], ...] = (
     gaps_of_contact.surface,
     gaps_of_contact.wet_area,
+    gap_of_surface.what_was_used,
     gaps_of_contact.dry_friction,
     gaps_of_water.droplet,
     gaps_of_water.capillary,

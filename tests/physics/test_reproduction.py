@@ -208,6 +208,33 @@ def test_plain_contact_area_by_quadrature(rows: dict[str, Compared]) -> None:
     assert rows["eq-2"].computed == pytest.approx(area, rel=2e-4)
 
 
+def test_what_the_authors_must_have_used_gives_their_outputs(paper: Paper) -> None:
+    from skinbayes.contact import mean_separation, relative_contact_area, twice_stress_variance
+    from skinbayes.reproduce.gap_of_surface import used
+    from skinbayes.roughness import SelfAffineSpectrum, rms_slope
+
+    height, cut_off, gamma = used(paper, 13e-6)
+    surface = SelfAffineSpectrum(
+        rms_height=height,
+        hurst_exponent=0.78,
+        wavevector_min=1e3,
+        wavevector_rolloff=1e3,
+        wavevector_max=cut_off,
+    )
+    assert rms_slope(surface) == pytest.approx(2.8, rel=1e-6)
+    assert mean_separation(paper.pressure, surface, skin=paper.wet, area_correction=gamma) == pytest.approx(
+        13e-6, rel=1e-6
+    )
+    variance = twice_stress_variance(surface, paper.wet)
+    assert relative_contact_area(paper.pressure, variance, area_correction=gamma) == pytest.approx(
+        6.59e-4, rel=1e-6
+    )
+    assert height == pytest.approx(math.sqrt(10) * 22.4e-6, rel=0.05) and cut_off == pytest.approx(
+        1e9, rel=0.2
+    )
+    assert 0.39 < gamma < 0.43
+
+
 def test_droplet_and_evaporation_by_hand(rows: dict[str, Compared]) -> None:
     assert rows["droplet-film"].computed == pytest.approx(50e-9 / (0.08 * 0.008), rel=1e-12)
     assert rows["eq-8"].computed == pytest.approx((5600 - 1150) * 8.9e-5 / 2272e3, rel=1e-9)
