@@ -63,7 +63,8 @@ def what_was_used(paper: Paper) -> Demonstration:
         where="Sects. 3 to 5",
         text="Slope, mean separation and wet area are outputs; they determine heights, cut-off and correction, without a plateau "
         "and with H and q0 as printed. The three rows go through what ≈ 13 µm allows. The cut-off agrees with the printed "
-        "one, the heights are about √10 times the printed ones, and the correction is near the usual 0.42, far from plain theory, 1.",
+        "one, the heights are about √10 times the printed ones, and the correction is near the usual 0.42, far from "
+        "plain theory, 1.",
         headers=("ū(p0)", "h_rms", "q1", "γ"),
         rows=[
             *rows,
