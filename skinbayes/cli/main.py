@@ -24,6 +24,7 @@ from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE,
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.report import report
+from skinbayes.cli.reproduce import reproduce
 from skinbayes.cli.sensitivity import sensitivity
 from skinbayes.cli.spectrum import spectrum
 from skinbayes.cli.template import template
@@ -72,6 +73,7 @@ for _command in (
     compare,
     design,
     report,
+    reproduce,
 ):
     cli.add_command(_command)
 

@@ -5,5 +5,14 @@ from skinbayes.report.digest import digest
 from skinbayes.report.joint_page import joint_digest, joint_remarks
 from skinbayes.report.page import write_report
 from skinbayes.report.remarks import remarks
+from skinbayes.report.reproduction_page import write_reproduction
 
-__all__ = ["digest", "joint_digest", "joint_remarks", "remarks", "write_comparison", "write_report"]
+__all__ = [
+    "digest",
+    "joint_digest",
+    "joint_remarks",
+    "remarks",
+    "write_comparison",
+    "write_report",
+    "write_reproduction",
+]

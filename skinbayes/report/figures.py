@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from base64 import b64encode
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from skinbayes.plot.style import look
@@ -47,11 +48,16 @@ def picture(fit: Fit | Comparison, drawing: Drawing) -> dict[str, Any]:
 
 def drawn(what: Any, drawing: Drawing, warning: str = "") -> dict[str, Any]:
     """The same of anything that a drawing can be made of; ``warning`` stands before its alternative text."""
-    wide = drawing.draw(what, width=None)
-    return vars(drawing) | {
-        "alternative": f"{warning}{drawing.alternative}",
+    texts = vars(drawing) | {"alternative": f"{warning}{drawing.alternative}"}
+    return placed(texts, drawing.draw(what, width=None), drawing.draw(what, width=NARROW))
+
+
+def placed(texts: Mapping[str, Any], wide: Figure, narrow: Figure) -> dict[str, Any]:
+    """Key, heading, alternative and caption of a figure with its images for screens and for phones."""
+    return {
+        **texts,
         "wide": _image(wide),
-        "narrow": _image(drawing.draw(what, width=NARROW)),
+        "narrow": _image(narrow),
         "large": float(wide.get_size_inches()[0]) > LARGE,  # may be wider than the text
     }
 

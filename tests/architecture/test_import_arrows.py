@@ -49,11 +49,15 @@ MAY_KNOW: dict[str, set[str]] = {
     "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "topography", "problem",
             "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
+    # the paper beside the physics
+    "reproduce": {*WORDS, "units", "files", *PHYSICS},
     # faces
-    "plot": {*WORDS, "units", "topography", "statistics", "diagnose", "forward", "problem", "fit", "comparison"},
+    "plot": {*WORDS, "atomic", "units", "topography", "reproduce", "roughness", "statistics", "diagnose", "forward", "problem",
+             "fit", "comparison"},
     "report": {*WORDS, "atomic", "units", "roughness", "topography", "statistics", "diagnose", "files", "forward", "problem",
-               "fit", "comparison", "plot"},
+               "fit", "comparison", "plot", "reproduce"},
     "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "plot", "report",
+            "reproduce",
             "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
@@ -95,7 +99,7 @@ HOMES: dict[str, set[str]] = {
     "pydantic": {"files", "fit"},
     "rich": {"cli"},
     "tomlkit": {"files"},
-    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot"},
+    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot", "reproduce"},
     "xarray": {"fit", "plot", "report"},
 }
 """Library to the floors that may import it; a library that is not here is not a dependency."""

@@ -19,7 +19,7 @@ import skinbayes
 
 DOCUMENTED = ("roughness", "topography", "contact", "wetting", "lubrication", "friction", "statistics", "sampling", "diagnose",
               "files", "forward", "problem", "fit", "comparison", "plot", "report", "units", "vocabulary", "errors",
-              "arrays")  # fmt: skip
+              "arrays", "reproduce")  # fmt: skip
 
 ATOM = r"(?:Pa|m|s|kg|N|J|W|rad|mol)(?:[²³⁴]|\^-?\d|\^\(\d − \w+\))?"
 UNIT = re.compile(
@@ -101,6 +101,7 @@ def test_top_level_names() -> None:
         "forward",
         "problem",
         "fit",
+        "reproduce",
     ),
 )
 def test_packages_list_what_they_export(package: str) -> None:

@@ -26,6 +26,7 @@ REFERENCE = {
     "fehlberg2025-powerlaw-fit": 15,
     "frictional-shear-stress-estimates": 4,
     "persson2013-reported-values": 54,
+    "persson2013-statements": 212,
     "skin-friction-relative-effects": 22,
     "skin-friction-summaries": 12,
     "sources": 34,
