@@ -30,11 +30,13 @@ class Weighted:
     positions : shape ``(n, D)``
     weights : shape ``(n,)``, their sum is 1
     evaluations : likelihoods computed on the way
+    log_evidence : ln of the mean unnormalised weight
     """
 
     positions: np.ndarray
     weights: np.ndarray
     evaluations: int
+    log_evidence: float
 
     @property
     def effective_size(self) -> float:
@@ -112,8 +114,10 @@ def importance_sample(problem: Problem, rng: np.random.Generator, least: float =
         chosen = proposals[-REMEMBERED:]
         draws = np.concatenate([student.draw(rng, FINAL // len(chosen)) for student in chosen])
         evaluations += len(draws)
-        weights, _ = tempered(target.log_density(draws) - _mixture(chosen, draws), 0.0)
-        found = Weighted(draws, weights, evaluations)
+        ratio = target.log_density(draws) - _mixture(chosen, draws)
+        weights, _ = tempered(ratio, 0.0)
+        evidence = float(np.logaddexp.reduce(ratio)) - log(len(draws))
+        found = Weighted(draws, weights, evaluations, evidence)
         if found.effective_size >= least:
             return found
     raise AssertionError(f"importance sampling did not find the posterior in {evaluations} evaluations")
