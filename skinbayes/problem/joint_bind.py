@@ -51,7 +51,8 @@ def bind_joint(
             f"{' or '.join(spec.experiments)}"
         )
     known = {
-        name: _forward_of(spec, name, forwards and forwards[name], settings or {}) for name in spec.experiments
+        name: _forward_of(spec, name, forwards and forwards[name], settings or {})
+        for name in spec.experiments
     }
     _check_taken(spec, known)
     own_settings = _settings(spec, known, settings or {})

@@ -70,7 +70,8 @@ def simulation(number: int, kind: str = "prior") -> FoundLoss:
     mean = float(found.weights @ losses)
     return FoundLoss(
         truth=loss,
-        level=(found.effective_size * float(found.weights @ (losses < loss)) + 0.5) / (found.effective_size + 1),
+        level=(found.effective_size * float(found.weights @ (losses < loss)) + 0.5)
+        / (found.effective_size + 1),
         mean=mean,
         width=float(np.sqrt(found.weights @ np.square(losses - mean))),
         preference=found.log_evidence - without.log_evidence,

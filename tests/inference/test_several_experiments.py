@@ -228,7 +228,7 @@ def test_what_does_not_fit_together_is_refused(changed: dict[str, Any], words: s
 
 
 def test_an_experiment_takes_what_its_options_make_it_take(tmp_path: Path) -> None:
-    """A ball pressed into skin that relaxes beside one whose tissue is taken for elastic; and the other way round by a setting."""
+    """A ball pressed into skin that relaxes beside one whose tissue is taken for elastic."""
     relaxing = experiment(3e-3, 0.3, 2, options={"substrate": "constant_loss"})
     relaxing["data"]["indentation_rate"] = np.full(DEPTH.size, 2.5e-3)
     both = {"large": experiment(8e-3, 0.2, 1), "small": relaxing}
@@ -243,7 +243,9 @@ def test_an_experiment_takes_what_its_options_make_it_take(tmp_path: Path) -> No
     with pytest.raises(sb.InputError, match="loss_tangent_bulk: none of the forward models"):
         sb.load_joint_problem(file, settings={"substrate[small]": "elastic"})
     with pytest.raises(sb.InputError, match=r"experiments\.small.*option 'substrat'"):
-        sb.build_joint_problem(both | {"small": relaxing | {"options": {"substrat": "elastic"}}}, parameters=parameters)
+        sb.build_joint_problem(
+            both | {"small": relaxing | {"options": {"substrat": "elastic"}}}, parameters=parameters
+        )
 
 
 def test_files_of_one_and_of_several_experiments_are_told_apart(tmp_path: Path) -> None:
