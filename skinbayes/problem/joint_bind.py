@@ -51,7 +51,7 @@ def bind_joint(
             f"{' or '.join(spec.experiments)}"
         )
     known = {
-        name: _forward_of(spec, name, forwards and forwards[name], settings or {})
+        name: _forward_of(spec, name, forwards[name] if forwards else None, settings or {})
         for name in spec.experiments
     }
     _check_taken(spec, known)
