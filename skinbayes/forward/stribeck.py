@@ -87,7 +87,10 @@ def stribeck_model(
     """Return the forward model of the ball, of the cylinder that the paper takes for it, or of a pad that is pressed flat."""
     if contact == PAD and substrate != ELASTIC:
         raise InputError(
-            f"options.contact: 'pad' goes with substrate = '{ELASTIC}' only; expected 'line' or 'point' on skin that relaxes"
+            f"options.contact is 'pad' and options.substrate '{substrate}': a pad carries its contact with it while it "
+            "slides, so that its tissue does not pass, comes back in no film and dissipates nothing; expected substrate = "
+            f"'{ELASTIC}' with the modulus of tissue that is held for as long as a stroke, or 'line' or 'point', a ball that "
+            "passes over skin that relaxes"
         )
     theory = Theory(contact, flow_factors, substrate)
     elastic = _elastic(theory)

@@ -53,10 +53,8 @@ def bind_joint(
             f"{' or '.join(spec.experiments)}"
         )
     known = {
-        name: forwards[name]
-        if forwards
-        else forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
-        for name, one in spec.experiments.items()
+        name: _forward_of(spec, name, forwards[name] if forwards else None, settings or {})
+        for name in spec.experiments
     }
     _check_taken(spec, known)
     own_settings = _settings(spec, known, settings or {})
@@ -87,6 +85,21 @@ def bind_joint(
                 raise
             raise InputError(f"{place}{EXPERIMENTS}.{name}: {str(error).removeprefix(place)}") from None
     return joint_problem(spec, bound, settings)
+
+
+def _forward_of(
+    spec: JointSpec, name: str, forward: ForwardModel | None, settings: Mapping[str, str]
+) -> ForwardModel:
+    """Forward model of an experiment with its options, which say what it takes."""
+    one, place = spec.experiments[name], f"{spec.path}: {EXPERIMENTS}.{name}"
+    forward = forward or forward_model(one.forward, f"{place}.forward")
+    set_here = {
+        word: settings[key]
+        for word in forward.options
+        for key in (word, f"{word}[{name}]")
+        if key in settings
+    }
+    return forward.with_options(one.options | set_here, f"{place}.options")
 
 
 def _check_taken(spec: JointSpec, forwards: Mapping[str, ForwardModel]) -> None:
@@ -153,7 +166,7 @@ def _settable(forward: ForwardModel) -> Collection[str]:
 def experiment_of(spec: JointSpec, name: str, forward: ForwardModel | None = None) -> ModelSpec:
     """One experiment as a model of its own, with the parameters and the surface that it takes."""
     one = spec.experiments[name]
-    forward = forward or forward_model(one.forward, f"{spec.path}: {EXPERIMENTS}.{name}.forward")
+    forward = forward or _forward_of(spec, name, None, {})
     names = ("surface_name", "surface_file", "surface_stated", "surface_posterior")
     surface: dict[str, Any] = {key: getattr(spec, key) if forward.uses_surface else None for key in names}
     return replace(

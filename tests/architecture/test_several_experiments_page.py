@@ -37,7 +37,7 @@ def test_the_tables_of_an_experiment_are_named() -> None:
 
 
 def test_the_programs_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    first, second = blocks("python")
+    first, second, _ = blocks("python")
     known: dict[str, object] = {}
     exec(first, known)
     width = {name: np.ptp(np.log(q)) for name, q in known["by_itself"].items()}  # type: ignore[attr-defined]
@@ -68,3 +68,17 @@ def test_sliding_and_pressing_make_one_model(tmp_path: Path) -> None:
         ("young_modulus_bulk", "frictional_shear_stress", "noise_scale"),
         ("young_modulus_bulk", "noise_scale"),
     ]
+
+
+def test_one_loss_in_sliding_and_pressing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Loss of an indentation sharpens that of friction, and the two are said to disagree where they were simulated so."""
+    (tmp_path / "one-loss.toml").write_text(blocks("toml")[2], encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    known: dict[str, np.ndarray] = {}
+    exec(blocks("python")[2], known)
+    assert np.ptp(known["both"]) < 0.5 * np.ptp(known["friction"])
+    assert known["both"][0] < 0.16 < known["both"][1]
+    agree, disagree = capsys.readouterr().out.splitlines()
+    assert agree == "[[], []]" and disagree == "[['loss_tangent_bulk'], ['loss_tangent_bulk']]"

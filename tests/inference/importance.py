@@ -11,11 +11,14 @@ from dataclasses import dataclass
 from math import lgamma, log, pi
 
 import numpy as np
+from scipy.optimize import minimize
 
 from skinbayes.problem import Problem
 
 DEGREES_OF_FREEDOM = 5.0
-PRIOR_DRAWS, ROUND, FINAL = 1600, 800, 2400
+PRIOR_DRAWS = 1600
+ROUND, FINAL = 2, 6
+"""Draws of a round and of the end, over the effective size that is asked for."""
 ROUNDS = 40
 REMEMBERED = 4
 """Rounds whose draws a proposal is made from; the last draws come from as many proposals."""
@@ -30,11 +33,13 @@ class Weighted:
     positions : shape ``(n, D)``
     weights : shape ``(n,)``, their sum is 1
     evaluations : likelihoods computed on the way
+    log_evidence : ln of the mean unnormalised weight
     """
 
     positions: np.ndarray
     weights: np.ndarray
     evaluations: int
+    log_evidence: float
 
     @property
     def effective_size(self) -> float:
@@ -73,7 +78,37 @@ class Student:
         return norm - np.log(np.diag(self.root)).sum() - (nu + dimension) / 2 * np.log1p(distance / nu)
 
 
-def importance_sample(problem: Problem, rng: np.random.Generator, least: float = 400.0) -> Weighted:
+def mode(problem: Problem, rng: np.random.Generator, tries: int = 400) -> Student:
+    """A proposal about the mode that is found uphill of the best of draws from the prior, as wide as its curvature says."""
+    target = problem.target()
+    draws = target.transform.forward(problem.draw_prior(rng, tries))
+    density = target.log_density(draws)
+    best = draws[np.argmax(np.where(np.isfinite(density), density, -np.inf))]
+    step = 1e-3 * np.eye(problem.dimension)
+
+    def downhill(position: np.ndarray) -> tuple[float, np.ndarray]:
+        """Value and slope; by one side alone, or not at all, where the other is beyond what is possible."""
+        around = np.concatenate([[position], position + step, position - step])
+        value = -target.log_density(around)
+        here, sides = value[0], value[1:].reshape(2, -1)
+        good = np.isfinite(sides)
+        rise = np.where(good, sides, here) if np.isfinite(here) else np.zeros_like(sides)
+        slope = (rise[0] - rise[1]) / (np.maximum(good.sum(axis=0), 1) * step[0, 0])
+        return (float(here), slope) if np.isfinite(here) else (1e10, slope)
+
+    found = minimize(downhill, best, jac=True, method="BFGS", options={"gtol": 0.05, "maxiter": 60}).x
+    wide = 20 * step
+    slopes = np.array([downhill(place)[1] for place in np.concatenate([found + wide, found - wide])])
+    ahead, behind = np.split(slopes, 2)
+    curvature = (ahead - behind) / (2 * wide[0, 0])
+    values, axes = np.linalg.eigh((curvature + curvature.T) / 2)
+    spread = axes / np.sqrt(np.clip(values, 0.3, 1e5))  # hardly wider than a prior
+    return Student(found, np.linalg.cholesky(1.3 * spread @ spread.T))
+
+
+def importance_sample(
+    problem: Problem, rng: np.random.Generator, least: int = 400, start: Student | None = None
+) -> Weighted:
     """Weighted draws of the posterior of ``problem``.
 
     The proposals of the draws that are returned depend on earlier draws only, so that these are plain importance draws from a
@@ -84,6 +119,7 @@ def importance_sample(problem: Problem, rng: np.random.Generator, least: float =
     problem : a problem with data
     rng : source of randomness
     least : effective sample size that is asked for
+    start : first proposal; one from draws of the prior if None
 
     Raises
     ------
@@ -91,15 +127,17 @@ def importance_sample(problem: Problem, rng: np.random.Generator, least: float =
         It was not reached.
     """
     target = problem.target()
-    draws = target.transform.forward(problem.draw_prior(rng, PRIOR_DRAWS))
-    ratio = problem.log_likelihood(target.transform.inverse(draws))
-    fractions, power = tempered(ratio, 8 * problem.dimension)
-    proposals = [_about(draws, fractions, 1.5)]
-    evaluations = PRIOR_DRAWS
+    evaluations = 0
+    if start is None:
+        draws = target.transform.forward(problem.draw_prior(rng, PRIOR_DRAWS))
+        ratio = problem.log_likelihood(target.transform.inverse(draws))
+        start = _about(draws, tempered(ratio, 8 * problem.dimension)[0], 1.5)
+        evaluations = PRIOR_DRAWS
+    proposals = [start]
     rounds: list[tuple[np.ndarray, np.ndarray]] = []
     for _ in range(ROUNDS):
-        draws = proposals[-1].draw(rng, ROUND)
-        evaluations += ROUND
+        draws = proposals[-1].draw(rng, ROUND * least)
+        evaluations += len(draws)
         rounds = [*rounds, (draws, target.log_density(draws))][-REMEMBERED:]
         known = np.concatenate([positions for positions, _ in rounds])
         density = np.concatenate([values for _, values in rounds])
@@ -110,10 +148,12 @@ def importance_sample(problem: Problem, rng: np.random.Generator, least: float =
         if not ready:
             continue
         chosen = proposals[-REMEMBERED:]
-        draws = np.concatenate([student.draw(rng, FINAL // len(chosen)) for student in chosen])
+        draws = np.concatenate([student.draw(rng, FINAL * least // len(chosen)) for student in chosen])
         evaluations += len(draws)
-        weights, _ = tempered(target.log_density(draws) - _mixture(chosen, draws), 0.0)
-        found = Weighted(draws, weights, evaluations)
+        ratio = target.log_density(draws) - _mixture(chosen, draws)
+        weights, _ = tempered(ratio, 0.0)
+        evidence = float(np.logaddexp.reduce(ratio)) - log(len(draws))
+        found = Weighted(draws, weights, evaluations, evidence)
         if found.effective_size >= least:
             return found
     raise AssertionError(f"importance sampling did not find the posterior in {evaluations} evaluations")

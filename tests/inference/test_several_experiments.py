@@ -14,6 +14,7 @@ from skinbayes import errors as sb_errors
 from skinbayes.comparison.scores import score
 from skinbayes.problem.other_priors import priors_of, with_priors
 from skinbayes.problem.subsets import without_data
+from skinbayes.problem.template import joint_templates
 
 TRUTH, DEPTH = 25e3, np.linspace(1e-4, 6e-4, 6)
 
@@ -224,6 +225,27 @@ def test_what_does_not_fit_together_is_refused(changed: dict[str, Any], words: s
     experiments = given.pop("experiments")
     with pytest.raises(sb.InputError, match=words):
         sb.build_joint_problem(experiments, **given)
+
+
+def test_an_experiment_takes_what_its_options_make_it_take(tmp_path: Path) -> None:
+    """A ball pressed into skin that relaxes beside one whose tissue is taken for elastic."""
+    relaxing = experiment(3e-3, 0.3, 2, options={"substrate": "constant_loss"})
+    relaxing["data"]["indentation_rate"] = np.full(DEPTH.size, 2.5e-3)
+    both = {"large": experiment(8e-3, 0.2, 1), "small": relaxing}
+    parameters = PARAMETERS | {"loss_tangent_bulk": {"uniform": [0.0, 0.5]}}
+    problem = sb.build_joint_problem(both, parameters=parameters)
+    assert [one.names for one in problem.experiments.values()] == [
+        ("young_modulus_bulk",),
+        ("young_modulus_bulk", "loss_tangent_bulk"),
+    ]
+    problem.to_toml(file := tmp_path / "relaxing.toml")
+    assert "indentation_rate" in joint_templates(file)["small"].header
+    with pytest.raises(sb.InputError, match="loss_tangent_bulk: none of the forward models"):
+        sb.load_joint_problem(file, settings={"substrate[small]": "elastic"})
+    with pytest.raises(sb.InputError, match=r"experiments\.small.*option 'substrat'"):
+        sb.build_joint_problem(
+            both | {"small": relaxing | {"options": {"substrat": "elastic"}}}, parameters=parameters
+        )
 
 
 def test_files_of_one_and_of_several_experiments_are_told_apart(tmp_path: Path) -> None:

@@ -175,6 +175,28 @@ def test_what_elastic_skin_does_not_take_is_refused(tmp_path: Path) -> None:
         load_problem(write_model(tmp_path, text.replace('"elastic"', '"prony"')))
 
 
+def test_loss_beside_a_friction_that_adds_is_three_lines(tmp_path: Path) -> None:
+    """The lines of docs/elastic-or-viscoelastic.md, put into the shipped model."""
+    root = Path(__file__).resolve().parents[2]
+    page = (root / "docs" / "elastic-or-viscoelastic.md").read_text(encoding="utf-8")
+    options, parameters = page.split("```toml\n")[1].split("```")[0].split("\n\n")
+    text = (root / "models" / "finger-stribeck-additive.toml").read_text(encoding="utf-8")
+    for old, new in (('options = { contact = "line" }', options), ("[parameters]\n", parameters)):
+        assert old in text
+        text = text.replace(old, new)
+    problem = load_problem(write_model(tmp_path, text))
+    elastic = load_problem("finger-stribeck-additive")
+    assert set(problem.names) == {*elastic.names, "loss_tangent_bulk"}
+    inputs = {name: value[:, :1] for name, value in problem.inputs(problem.prior_medians()[None]).items()}
+    without = {**inputs, "additive_friction": np.zeros((1, 1))}
+    thin = Tables(problem.tables.spectrum)
+    found, less = (
+        problem.forward.evaluate({**one, "viscosity": np.array([[1.0]])}, thin)["friction_coefficient"]
+        for one in (inputs, without)
+    )
+    assert_allclose(found - less, inputs["additive_friction"], rtol=1e-9)
+
+
 def test_shipped_ball_predicts() -> None:
     """`stribeck-ball-viscoelastic` at its middle: loss adds to friction what the direct curve of its cylinder adds."""
     problem = load_problem("stribeck-ball-viscoelastic")

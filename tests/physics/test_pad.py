@@ -169,6 +169,10 @@ def test_what_a_pad_cannot_be() -> None:
     with pytest.raises(InputError, match="inlet_length is 0 m"):
         lubricated_point_films([0.1], **BALL, inlet_length=0.0)
     gel = HomogeneousSolid(young_modulus=5e4)
+    with pytest.raises(
+        InputError, match=r"'pad' and options.substrate 'constant_loss': a pad carries its contact with it"
+    ):
+        forward_model("stribeck").with_options({"contact": "pad", "substrate": "constant_loss"})
     bent = stribeck_curve(
         [1e-3], normal_force=1.0, sphere_radius=float(sphere_of_contact(1.0, 0.0, reduced_modulus=5e4)),
         spectrum=SURFACE, skin=gel, frictional_shear_stress=1e6,
