@@ -8,15 +8,29 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skinbayes.cli.new_file import refuse_existing, write_text
-from skinbayes.cli.options import json_option, overwrite_option
-from skinbayes.cli.output import print_json, print_sentences, print_table, say
+from skinbayes.cli.options import json_option, number_option, overwrite_option
+from skinbayes.cli.output import (
+    EXIT_DONE,
+    EXIT_NOT_CONVERGED,
+    print_json,
+    print_sentences,
+    print_table,
+    say,
+)
+from skinbayes.defaults import SEED
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
+    from skinbayes.fit import Fit
     from skinbayes.topography import MeasuredSurface, SurfaceAnalysis, SurfaceCollection
 
 FRAGMENT = '[surface]\nfile = "spectrum.csv"\n'
 """The lines of a model file beside the CSV."""
+
+FIT_FRAGMENT = (
+    '[surface]\nposterior = "surface-fit.nc"  # or the spectrum as it was measured: file = "spectrum.csv"\n'
+)
+"""The same beside a fit, whose uncertainty goes with it."""
 
 
 @click.command()
@@ -72,13 +86,26 @@ FRAGMENT = '[surface]\nfile = "spectrum.csv"\n'
 )
 @click.option("--convention", metavar="NAME", help="Of spectra that do not state theirs.")
 @click.option(
-    "-o", "--output", metavar="DIR", help="Folder for spectrum.html, spectrum.csv and surface.toml."
+    "--fit", "fitted", is_flag=True, help="Fit a self-affine surface, waves that nobody measured included."
+)
+@number_option("--seed", SEED, 0, "Of --fit: the same seed gives the same draws.")
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    help="Folder for spectrum.html, spectrum.csv, surface.toml, and with --fit surface-fit.nc.",
 )
 @overwrite_option
 @json_option
 def spectrum(
-    files: tuple[str, ...], output: str | None, overwrite: bool, as_json: bool, **options: Any
-) -> None:
+    files: tuple[str, ...],
+    fitted: bool,
+    seed: int,
+    output: str | None,
+    overwrite: bool,
+    as_json: bool,
+    **options: Any,
+) -> int:
     """Compute the power spectrum of measured surfaces.
 
     FILES are height maps or line profiles (of an instrument, .npy, .tif, or text), or spectra that another program computed, of
@@ -90,24 +117,64 @@ def spectrum(
     targets = (
         []
         if output is None
-        else [Path(output) / name for name in ("spectrum.csv", "surface.toml", "spectrum.html")]
+        else [
+            Path(output) / name
+            for name in (
+                "spectrum.csv",
+                "surface.toml",
+                "spectrum.html",
+                *(["surface-fit.nc"] if fitted else []),
+            )
+        ]
     )
     refuse_existing(targets, overwrite)
     names = _names(files)
     settings = _settings(options)
     collection = SurfaceCollection([_measured(path, names[path], settings, options) for path in names])
     collection.numbers()  # what cannot be used is refused before anything is written
+    found = _fit(collection, seed) if fitted else None
     if targets:
-        table, fragment, page = targets
-        write_text(table, spectrum_csv(collection))
-        write_text(fragment, FRAGMENT)
-        write_spectrum_page(collection, page, FRAGMENT)
+        lines = FRAGMENT if found is None else FIT_FRAGMENT
+        write_text(targets[0], spectrum_csv(collection))
+        write_text(targets[1], lines)
+        write_spectrum_page(collection, targets[2], lines, found)
+        if found is not None:
+            found.save(targets[3])
     if as_json:
-        print_json(document(collection) | {"written": [str(path) for path in targets]})
-        return
-    _show(collection)
-    for label, path in zip(("spectrum", "model file", "page"), targets, strict=False):
-        say(f"{label + ':':12}{path}")
+        told = {} if found is None else {"converged": found.converged, "parameters": fit_parameters(found)}
+        print_json(document(collection) | told | {"written": [str(path) for path in targets]})
+    else:
+        _show(collection)
+        if found is not None:
+            _show_fit(found)
+        for label, path in zip(("spectrum", "model file", "page", "fit"), targets, strict=False):
+            say(f"{label + ':':12}{path}")
+    return EXIT_DONE if found is None or found.converged else EXIT_NOT_CONVERGED
+
+
+def _fit(collection: SurfaceCollection, seed: int) -> Fit:
+    """The self-affine surface that has these spectra, those of each surface apart."""
+    from skinbayes.cli.progress import sampling_progress
+    from skinbayes.fit.spectrum_fit import fit_spectrum
+
+    with sampling_progress("surface") as progress:
+        return fit_spectrum([one.spectrum for one in collection.surfaces], seed=seed, progress=progress)
+
+
+def fit_parameters(fit: Fit) -> dict[str, Any]:
+    """Unit, median and 90 % interval of each parameter and of what follows from them."""
+    table = fit.summary(derived=True)
+    return {
+        str(name): {key: row[key] for key in ("unit", "median", "q05", "q95")}
+        for name, row in table.iterrows()
+    }
+
+
+def _show_fit(fit: Fit) -> None:
+    from skinbayes.report.spectrum_page import FIT_EXPLAINED, fit_rows
+
+    print_table(("self-affine surface", "median", "90 % interval"), fit_rows(fit), right=(1, 2))
+    print_sentences([FIT_EXPLAINED, str(fit.provenance["sampling"]["verdict"])])
 
 
 def _names(files: tuple[str, ...]) -> dict[str, str]:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from skinbayes.plot.numbers import quantity
+from skinbayes.plot import plot_data
+from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.surface import plot_directions, plot_measured_spectrum, plot_surface
+from skinbayes.plot.symbols import spoken_name
 from skinbayes.report.drawings import Drawing
 from skinbayes.report.figures import drawn
 from skinbayes.report.rendering import rendered, write_whole
 from skinbayes.roughness import rms_height, rms_slope
 from skinbayes.topography import HeightMap, MeasuredSurface, SurfaceCollection
+
+if TYPE_CHECKING:
+    from skinbayes.fit import Fit
 
 REFERENCES = (
     "B. N. J. Persson, A. Kovalev, S. N. Gorb, Tribology Letters 50 (2013) 17, 10.1007/s11249-012-0053-2, for the convention "
@@ -31,7 +36,16 @@ SHOWN = (0, 2, 4, 5, 6, 7, 8, 9)
 """Those that the page shows in its table; the others stand with each surface."""
 
 
-def write_spectrum_page(collection: SurfaceCollection, path: Path, fragment: str) -> Path:
+FIT_EXPLAINED = (
+    "A surface whose spectrum is constant up to the roll-off and falls as a power of the wavevector beyond it, from the smallest "
+    "wavevector measured to the largest there is. Nobody measured the largest: its prior goes from 1e7 to 1e10 1/m, and slope "
+    "and area ratio hang on it."
+)
+
+
+def write_spectrum_page(
+    collection: SurfaceCollection, path: Path, fragment: str, fit: Fit | None = None
+) -> Path:
     """Write one self-contained HTML page about measured surfaces.
 
     Parameters
@@ -39,6 +53,7 @@ def write_spectrum_page(collection: SurfaceCollection, path: Path, fragment: str
     collection : the surfaces
     path : the file to write
     fragment : the lines of a model file that use the spectrum
+    fit : of a self-affine surface to it, if there is one
 
     Returns
     -------
@@ -52,7 +67,23 @@ def write_spectrum_page(collection: SurfaceCollection, path: Path, fragment: str
     MachineError
         The disk is full.
     """
-    return write_whole(Path(path), rendered("spectrum.html", _context(collection, fragment)))
+    return write_whole(Path(path), rendered("spectrum.html", _context(collection, fragment, fit)))
+
+
+def fit_rows(fit: Fit) -> list[tuple[str, str, str]]:
+    """Median and 90 % interval of each parameter of a fitted surface, and of what follows from them, for people."""
+    rows = []
+    for name, row in fit.summary(derived=True).iterrows():
+        low, middle, high = (float(row[key]) for key in ("q05", "median", "q95"))
+        unit = str(row["unit"])
+        rows.append(
+            (
+                spoken_name(str(name)),
+                quantity(middle, unit),
+                interval(low, high, unit, typical=middle, joint=" to "),
+            )
+        )
+    return rows
 
 
 def surface_row(one: MeasuredSurface) -> tuple[str, ...]:
@@ -122,7 +153,7 @@ def collection_sentences(collection: SurfaceCollection) -> list[str]:
     return said
 
 
-def _context(collection: SurfaceCollection, fragment: str) -> dict[str, Any]:
+def _context(collection: SurfaceCollection, fragment: str, fit: Fit | None) -> dict[str, Any]:
     names = [one.name for one in collection.surfaces]
     several = len(names) > 1
     reading = (
@@ -142,8 +173,22 @@ def _context(collection: SurfaceCollection, fragment: str) -> dict[str, Any]:
         "headers": [HEADERS[i] for i in SHOWN],
         "rows": [[surface_row(one)[i] for i in SHOWN] for one in collection.surfaces],
         "surfaces": [_surface(one, i) for i, one in enumerate(collection.surfaces)],
+        "fit": None if fit is None else _fitted(fit),
         "fragment": fragment,
         "references": REFERENCES,
+    }
+
+
+def _fitted(fit: Fit) -> dict[str, Any]:
+    picture = Drawing(
+        "fit", plot_data, "Spectrum and fitted surface", "Measured C(q) with the band of the fitted surface.",
+        "Dots are the measured means of bins, the line is the median of the fitted self-affine surface, bands hold 90 % of it "
+        "and of what repeated measurements would give.",
+    )  # fmt: skip
+    return {
+        "rows": fit_rows(fit),
+        "said": [FIT_EXPLAINED, str(fit.provenance["sampling"]["verdict"])],
+        "picture": drawn(fit, picture, "" if fit.converged else "NOT CONVERGED. "),
     }
 
 

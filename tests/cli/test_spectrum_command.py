@@ -142,3 +142,22 @@ def test_what_cannot_be_used_is_one_message(
 def test_a_file_counts_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "given twice" in run(capsys, "a.csv", "a.csv")[2]
     assert "nowhere.npy" in run(capsys, tmp_path / "nowhere.npy")[2]
+
+
+def test_a_fit_reaches_the_model_that_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    np.save(tmp_path / "map.npy", heights(1))
+    folder = tmp_path / "out"
+    given = tmp_path / "map.npy", "--unit", "um", "--pixel-size", "1 um", "--fit", "-o", folder, "--json"
+    status, out, _ = run(capsys, *given)
+    found = json.loads(out)
+    assert status == 0 and found["converged"]
+    # true: roll-off 1e5 1/m and C ~ q^-3.6, H = 0.8; five standard deviations allowed
+    for name, true in (("hurst_exponent", 0.8), ("wavevector_rolloff", 1e5)):
+        one = found["parameters"][name]
+        assert abs(one["median"] - true) < 5 * (one["q95"] - one["q05"]) / 3.3, name
+    assert "The surface that has this spectrum" in (folder / "spectrum.html").read_text()
+    (folder / "model.toml").write_text(MODEL.format(fragment=(folder / "surface.toml").read_text()))
+    problem = sb.load_problem(folder / "model.toml")
+    assert any(name.startswith("surface_deviate") for name in problem.names)
+    heights_drawn = problem.derived(problem.draw_prior(np.random.default_rng(1), 400))["rms_height"]
+    assert np.median(heights_drawn) == pytest.approx(found["parameters"]["rms_height"]["median"], rel=0.1)
