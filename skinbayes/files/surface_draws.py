@@ -13,6 +13,8 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import load_dataset
+from skinbayes.files.reading import open_file
+from skinbayes.files.table import LARGEST_TABLE
 from skinbayes.roughness import SelfAffineSpectrum
 from skinbayes.sealed import DamagedFile, checked
 from skinbayes.vocabulary import QUANTITIES
@@ -94,10 +96,10 @@ def holds_draws(path: Path) -> bool:
     if path.is_dir() or path.suffix == ".nc":
         return True
     try:
-        with path.open(encoding="utf-8", errors="replace") as file:
-            return any("rms_height [" in line for line in file.readlines(4096))
-    except OSError:
-        return False
+        with open_file(path, LARGEST_TABLE, "a CSV file") as file:
+            return b"rms_height [" in file.read(4096)
+    except InputError:
+        return False  # who reads it as a spectrum says what is wrong
 
 
 def read_surface_draws(path: str | Path) -> SurfaceDraws:
