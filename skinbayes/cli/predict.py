@@ -54,7 +54,9 @@ def predict(
     overwrite: bool,
     as_json: bool,
 ) -> int:
-    """Evaluate the forward model at given parameters, or with --run at those of a posterior.
+    """Predict with a model at given parameters, or with a run.
+
+    Without --run the forward model is evaluated, with it at the draws of a posterior.
 
     Free parameters of a MODEL that are not set stand at their prior median. With --run, predictions are medians and 90 %
     intervals at the rows of --conditions, of the model and of one measurement more.

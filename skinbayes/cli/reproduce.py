@@ -23,7 +23,7 @@ HEADERS = ("what and where", "paper", "skinbayes", "off by", "agrees")
 )
 @json_option
 def reproduce(figures: str | None, output: str | None, as_json: bool) -> int:
-    """The paper's numbers, equations and statements, printed against computed.
+    """Compare what the paper states with what is computed.
 
     The paper is Persson, Kovalev & Gorb, Tribology Letters 50 (2013) 17. A number agrees if it is within what its
     digits and signs allow; the rules are printed with the page and the JSON document.

@@ -135,7 +135,7 @@ def tabulated_friction(
     >>> table = build_film_table(FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), checked=0))
     >>> print(tabulated_friction(table, [1e-6, 1e-3, 2e-2], balls=LubricatedBalls(parameters=ball,
     ...     frictional_shear_stress=15e6)).friction_coefficient.round(3))
-    [1.423 1.006 0.132]
+    [1.423 1.007 0.132]
     """
     return TabulatedFriction(*_tabulated(table, speed_viscosity_product, balls, None))
 

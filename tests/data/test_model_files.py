@@ -322,7 +322,7 @@ def test_one_clear_message(case: str, tmp_path: Path) -> None:
     message = str(caught.value)
     for fragment in fragments:
         assert fragment in message, f"{fragment!r} is not in {message!r}"
-    assert "\n" not in message and len(message) < len(str(path)) + 700
+    assert "\n" not in message and len(message) < len(str(path)) + 1000
     assert str(tmp_path) in message or "data set" in message or "forward" in message
 
 

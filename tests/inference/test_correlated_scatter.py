@@ -107,7 +107,7 @@ def test_effects_given_data_are_the_conditional_normal(parts: tuple[bool, bool, 
     case = Case(5, *parts)
     mean, covariance = case.scatter.effects_given(*case.arguments)
     noise = case.covariance.copy()
-    factor = case.scatter._factor(case.scales)[0]
+    factor = case.scatter.prior_factor(case.scales)[0]
     design = case.scatter.at_rows(np.eye(case.scatter.n_effects)).T
     prior = factor @ factor.T
     noise -= design @ prior @ design.T

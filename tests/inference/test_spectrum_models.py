@@ -279,3 +279,18 @@ def test_ridges_carry_all_load_on_their_tops() -> None:
     assert derived(nominal_pressure="1 kPa", **ridges)["closing_ridges"] == 0.0
     with pytest.raises(sb.InputError, match="ridge_width is larger than ridge_spacing"):
         derived(nominal_pressure="1 kPa", ridge_spacing="0.1 mm", ridge_width="0.2 mm")
+
+
+@pytest.mark.parametrize("name", ["roughness-spectrum", "roughness-spectrum-free-form"])
+def test_shipped_models_take_a_spectrum_of_the_users_own(name: str) -> None:
+    power = SURFACE.power(Q)
+    data = {
+        "wavevector": Q,
+        "power_spectral_density": power,
+        "power_spectral_density_standard_deviation": power / np.sqrt(40),
+    }
+    problem = sb.load_problem(name, data=data, settings={"wavevector_min": "1e4 1/m"})
+    # every factor of a free form at 1 is the self-affine surface itself
+    theta = np.array([NUMBERS.get(label, 1.0) for label in problem.names])
+    assert problem.predict(theta)["power_spectral_density"] == pytest.approx(power, rel=1e-9)
+    assert np.isfinite(problem.log_posterior(theta))

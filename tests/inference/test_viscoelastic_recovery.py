@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from loss_studies import FoundLoss, simulation
+from loss_studies import LOSS, FoundLoss, simulation
 from scipy import stats
 from simulated_coverage import inside
+
+from skinbayes.problem import load_problem
 
 SIMULATIONS, ELASTIC = 50, 10
 
@@ -17,6 +19,14 @@ def several(kind: str, count: int) -> list[FoundLoss]:
         found.append(simulation(number, kind))
         print(kind, number, found[-1], flush=True)
     return found
+
+
+def test_the_two_models_differ_by_the_loss_alone() -> None:
+    relaxing, elastic = load_problem("finger-stribeck-viscoelastic"), load_problem("finger-stribeck")
+    assert set(relaxing.names) - set(elastic.names) == {LOSS} and set(elastic.names) <= set(relaxing.names)
+    assert relaxing.data_fingerprint == elastic.data_fingerprint
+    priors = {p.label: p.prior_text for p in relaxing.free}
+    assert all(priors[p.label] == p.prior_text for p in elastic.free)
 
 
 @pytest.mark.slow
