@@ -73,7 +73,7 @@ def design(
         )
     table = found.to_frame()
     if output is not None:
-        from skinbayes.plot import plot_design
+        from skinbayes.plot.design import plot_design
 
         plot_design(found).savefig(output)
     if as_json:

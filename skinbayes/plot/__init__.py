@@ -2,7 +2,6 @@
 
 from skinbayes.plot.corner_plot import plot_corner
 from skinbayes.plot.data import plot_data
-from skinbayes.plot.design import plot_design
 from skinbayes.plot.discrepancy import plot_discrepancy
 from skinbayes.plot.effects import plot_effects, plot_residuals
 from skinbayes.plot.levels import plot_levels
@@ -14,7 +13,6 @@ from skinbayes.plot.trace import plot_trace
 __all__ = [
     "plot_corner",
     "plot_data",
-    "plot_design",
     "plot_discrepancy",
     "plot_effects",
     "plot_levels",

@@ -92,7 +92,8 @@ def test_the_posterior_is_that_of_quadrature_narrower_than_each_alone_and_holds_
     large, small = fit.left_out(refit=True)
     alone = sb.sample(problem.experiments["small"], seed=1, ess=2000)
     evidence = [one.provenance["sampling"]["log_evidence"][0] for one in (fit, alone)]
-    assert large.elpd == pytest.approx(evidence[0] - evidence[1], abs=0.05)
+    assert 0.0 < large.error < 0.1
+    assert large.elpd == pytest.approx(evidence[0] - evidence[1], abs=4.0 * large.error)
     low, _, high = np.log(small.without["young_modulus_bulk"])
     assert (high - low) / (2 * 1.645) == pytest.approx(widths["large"], rel=0.1)
     assert not large.pulls and not small.pulls
