@@ -121,7 +121,10 @@ class StudentMixture:
             if gained < before + _CLOSE:
                 break
             before = gained
-            mixture = mixture._maximised(x, share * np.exp(parts - total), distance, points, prior)
+            try:
+                mixture = mixture._maximised(x, share * np.exp(parts - total), distance, points, prior)
+            except np.linalg.LinAlgError:
+                break  # where one point has nearly all the weight there is no matrix to learn
         return max(
             (
                 StudentMixture(

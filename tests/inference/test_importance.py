@@ -320,6 +320,17 @@ def test_bridge_sampling_has_the_error_it_states():
     assert np.all((np.std(ratios, axis=0) > 0.75) & (np.std(ratios, axis=0) < 1.15))
 
 
+def test_one_point_with_all_the_weight_teaches_no_matrix() -> None:
+    """As where the posterior is so narrow that one of the first draws lies in it."""
+    mixture = StudentMixture(np.ones(1), np.zeros((1, 3)), np.eye(3)[np.newaxis], np.full(1, 5.0))
+    x = np.random.default_rng(1).normal(size=(200, 3))
+    weights = np.zeros(200)
+    weights[0] = 1.0
+    found = mixture.refitted(x, weights)
+    assert np.isfinite(found.log_density(x)).all()
+    assert (np.linalg.det(found.factors) > 0).all()
+
+
 @pytest.mark.slow
 def test_evidence_of_normal_distributions_in_up_to_twenty_dimensions():
     near, within = [], []
