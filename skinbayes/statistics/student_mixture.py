@@ -229,7 +229,10 @@ def _begun(x: FloatArray, count: int, rng: np.random.Generator, weights: FloatAr
     while len(places) < count:
         nearest = np.minimum(nearest, np.square(white - white[places[-1]]).sum(axis=1))
         far = weights * nearest
+        if not 0.0 < far.sum() < np.inf:
+            break  # the points with weight are one point
         places.append(int(rng.choice(len(x), p=far / far.sum())))
+    count = len(places)
     means = x[places] if count > 1 else mean[np.newaxis]
     factors = np.repeat(whole[np.newaxis] / count ** (1 / dimension), count, axis=0)
     return StudentMixture(np.full(count, 1 / count), means, factors, np.full(count, 6.0))
