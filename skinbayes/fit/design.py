@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.dataset import Data, as_dataset
+from skinbayes.files.dataset import Data, Dataset, as_dataset
+from skinbayes.files.dataset_rows import positive_column
 from skinbayes.files.find_dataset import suggestions
 from skinbayes.fit.new_measurements import NewMeasurements
 from skinbayes.fit.prediction import new_conditions_of
@@ -186,7 +187,7 @@ def design(
         raise InputError(
             f"{len(parameters)} parameters; expected at most {MOST_PARAMETERS} of them, or none for all together"
         )
-    costs = None if cost is None else _costs(dataset.columns, cost, str(dataset.path))
+    costs = None if cost is None else _costs(dataset, cost)
     rng = np.random.default_rng([seed])
     most = MOST_DRAWS if parameters else DRAWS
     asked = [
@@ -201,8 +202,10 @@ def design(
 
     def worth(wanted: list[int]) -> tuple[float, float]:
         if against is not None:
-            under = [np.stack([a.log_predictive(made, wanted) for made in asked]) for a in asked]
-            return information_on_model((under[0], under[1]))
+            first, second = asked
+            return information_on_model(
+                *((first.log_predictive(made, wanted), second.log_predictive(made, wanted)) for made in asked)
+            )
         if parameters:
             return information_on(phi, np.hstack([values[:, wanted] for values in asked[0].values]))
         return information(asked[0].log_density(asked[0], wanted))
@@ -223,7 +226,7 @@ def design(
 
 def _measurements(
     fit: FitResult,
-    dataset: Data,
+    dataset: Dataset,
     most: int,
     rng: np.random.Generator,
     progress: Callable[[int, int], None] | None,
@@ -233,15 +236,10 @@ def _measurements(
     return NewMeasurements.of(new_conditions_of(fit, dataset, progress), picked, rng)
 
 
-def _costs(columns: Mapping[str, Any], cost: str, place: str) -> FloatArray:
-    if cost not in columns or columns[cost].dtype.kind != "f":
-        raise InputError(f"{place}: no numeric column '{cost} [..]', which is to be the cost of a row")
-    values = np.asarray(columns[cost], dtype=float)
-    if not (values > 0.0).all():
-        raise InputError(
-            f"{place}: row {int(np.flatnonzero(~(values > 0.0))[0]) + 1}: {cost} is not positive; expected costs > 0"
-        )
-    return values
+def _costs(dataset: Dataset, cost: str) -> FloatArray:
+    if cost not in dataset.units:
+        raise InputError(f"{dataset.path}: no numeric column '{cost} [..]', which is to be the cost of a row")
+    return positive_column(dataset, cost, "information is divided by it")
 
 
 def _chosen(

@@ -9,7 +9,7 @@ from scipy.special import logsumexp
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
-from skinbayes.fit.prediction import measuring_at
+from skinbayes.fit.prediction import drawn_measurements
 from skinbayes.problem.new_conditions import NewConditions
 from skinbayes.statistics.groups import CrossedGroups
 from skinbayes.statistics.noise import NoiseFamily
@@ -30,81 +30,67 @@ class NewMeasurements:
     observables : what is measured in each row
     theta : the draws, ``(M, D)``
     noise : of each observable
-    location : of what scatters, y or ln y, for each observable ``(M, N)``; effects that the fit knows are in it
+    predicted : of each observable, ``(M, N)``, SI
     width : of the noise, for each observable ``(M, N)``
-    shapes : parameters of the shape of the noise, for each observable
-    shared : factors F of the covariance F Fᵀ that effects give the rows beside the noise, ``(M, N, K)``; None without effects
-    values : one measurement of each observable drawn for each draw, on the scale on which it scatters, ``(M, N)``
+    shapes : parameters of the shape of the noise, for each observable, each ``(M, N)``
+    shared : mean ``(M, N)`` of what effects add to the rows on the scale on which these scatter, given the data, and factors F of
+        the covariance F Fᵀ between them, ``(M, N, K)``; None without effects
+    values : one measurement of each observable drawn for each draw, ``(M, N)``, SI
     """
 
     observables: tuple[str, ...]
     theta: FloatArray
     noise: tuple[NoiseFamily, ...]
-    location: tuple[FloatArray, ...]
+    predicted: tuple[FloatArray, ...]
     width: tuple[FloatArray, ...]
     shapes: tuple[dict[str, FloatArray], ...]
-    shared: FloatArray | None
+    shared: tuple[FloatArray, FloatArray] | None
     values: tuple[FloatArray, ...]
 
     @classmethod
     def of(cls, new: NewConditions, theta: FloatArray, rng: np.random.Generator) -> NewMeasurements:
         """Draw measurements at the rows of ``new`` for each of the draws ``theta``."""
-        shared = new.problem.shared
-        if shared is not None:
-            theta = theta[: max(200, MOST_NUMBERS // new.measured.shared.n_effects**2)]  # type: ignore[union-attr]
-        predicted = new.problem.predict(theta)
-        sound = np.all([np.isfinite(predicted[o]).all(axis=1) for o in new.measured.observables], axis=0)
+        names = new.measured.observables
+        if new.measured.shared is not None:
+            theta = theta[: max(200, MOST_NUMBERS // new.measured.shared.n_effects**2)]
+        found = new.problem.predict(theta)
+        sound = np.all([np.isfinite(found[name]).all(axis=1) for name in names], axis=0)
         if not sound.mean() > 0.5:
             raise InputError(
                 f"{new.dataset.path}: the model '{new.measured.name}' has no answer at some of these rows in "
                 f"{1 - sound.mean():.0%} of the draws; leave out rows that lie outside its range"
             )
-        theta = theta[sound]
-        predicted = {name: values[sound] for name, values in predicted.items()}
-        measuring = measuring_at(new, predicted)
-        inputs = measuring.inputs(theta)
-        noise = tuple(o.noise for o in measuring.observations)
-        with np.errstate(all="ignore"):
-            location = [
-                np.log(predicted[o.name]) if o.noise.logarithmic else predicted[o.name]
-                for o in measuring.observations
-            ]
-        widths = np.split(measuring.likelihood.width(theta), len(noise), axis=-1)
-        shapes = tuple(o.shape_arguments(inputs) for o in measuring.observations)
-        factors = None
-        if shared is not None:
-            mean, factors = _effects(new, theta)
-            location[0] = location[0] + mean
-        values = []
-        for family, middle, width, shape in zip(noise, location, widths, shapes, strict=True):
-            values.append(middle + width * family.standard_draw(rng, middle.shape, **shape))
-        if factors is not None:
-            standard = rng.standard_normal((len(theta), factors.shape[-1], 1))
-            values[0] = values[0] + (factors @ standard)[..., 0]
+        theta, predicted = theta[sound], {name: found[name][sound] for name in names}
+        made = drawn_measurements(new, theta, predicted, rng)
+        observations, stacked = made.problem.observations, np.stack(list(predicted.values()), axis=1)
+        inputs, shape = made.problem.inputs(theta), stacked[:, 0].shape
         return cls(
-            new.measured.observables, theta, noise, tuple(location), tuple(widths), shapes, factors, tuple(values)
-        )  # fmt: skip
+            observables=names,
+            theta=theta,
+            noise=tuple(o.noise for o in observations),
+            predicted=tuple(predicted.values()),
+            width=tuple(np.split(made.problem.likelihood.width_about(theta, stacked), len(names), axis=-1)),
+            shapes=tuple(
+                {key: np.broadcast_to(value, shape) for key, value in o.shape_arguments(inputs).items()}
+                for o in observations
+            ),
+            shared=None if made.effects is None else _effects(new, theta),
+            values=tuple(made.values.values()),
+        )
 
     def log_density(self, made: NewMeasurements, rows: list[int]) -> FloatArray:
-        """ln p of the measurements ``made`` at some rows together under each draw of this, ``(M of made, M)``.
-
-        Measurements are on the scale on which they scatter in this model.
-        """
+        """ln p of the measurements ``made`` at some rows together under each draw of this, ``(M of made, M)``."""
         total = np.zeros((len(made.theta), len(self.theta)))
         for place, family in enumerate(self.noise):
-            values, jacobian = made.on_scale(place, family, rows)
-            total += jacobian[:, np.newaxis]
-            location, width = self.location[place][:, rows], self.width[place][:, rows]
-            if place == 0 and self.shared is not None:
-                total += self._normal(values, location, width, rows)
-                continue
-            for i in range(len(rows)):
-                shape = {
-                    name: np.broadcast_to(v, self.width[place].shape)[:, rows[i]]
-                    for name, v in self.shapes[place].items()
-                }
-                z = (values[:, np.newaxis, i] - location[:, i]) / width[:, i]
-                total += family.standard_log_density(z, **shape) - np.log(width[:, i])
+            values = made.values[place][:, rows]
+            if self.shared is not None:  # then there is one observable
+                return self._normal(values, rows)
+            for i, row in enumerate(rows):
+                shape = {key: value[:, row] for key, value in self.shapes[place].items()}
+                with np.errstate(all="ignore"):
+                    total += family.log_density_at(
+                        values[:, [i]], self.predicted[place][:, row], self.width[place][:, row], **shape
+                    )
         return total
 
     def log_predictive(self, made: NewMeasurements, rows: list[int]) -> FloatArray:
@@ -114,50 +100,37 @@ class NewMeasurements:
             np.fill_diagonal(density, -np.inf)
         return np.asarray(logsumexp(density, axis=1) - np.log(len(self.theta) - (made is self)))
 
-    def on_scale(self, place: int, family: NoiseFamily, rows: list[int]) -> tuple[FloatArray, FloatArray]:
-        """Measurements on the scale of another family, ``(M, rows)``, and ln of the Jacobian to the observable, ``(M,)``."""
-        values, logarithmic = self.values[place][:, rows], self.noise[place].logarithmic
-        with np.errstate(all="ignore"):
-            ln = values if logarithmic else np.log(values)
-            found = (
-                values
-                if logarithmic == family.logarithmic
-                else (ln if family.logarithmic else np.exp(values))
-            )
-        # what the scale of this family cannot hold, such as ln of a negative number, is impossible there
-        return np.where(np.isnan(found), np.inf, found), -ln.sum(axis=1) if family.logarithmic else np.zeros(
-            len(ln)
-        )
-
-    def _normal(
-        self, values: FloatArray, location: FloatArray, width: FloatArray, rows: list[int]
-    ) -> FloatArray:
-        """Joint normal density of rows that share effects, ``(I, M)``."""
+    def _normal(self, values: FloatArray, rows: list[int]) -> FloatArray:
+        """Joint normal density of values ``(I, rows)`` of rows that share effects, ``(I, M)``."""
         assert self.shared is not None
-        factor = self.shared[:, rows]
+        (family,), (mean, factors) = self.noise, self.shared
+        predicted, factor = self.predicted[0][:, rows], factors[:, rows]
         covariance = factor @ np.swapaxes(factor, 1, 2)
         diagonal = np.arange(len(rows))
-        covariance[:, diagonal, diagonal] += width**2
+        covariance[:, diagonal, diagonal] += self.width[0][:, rows] ** 2
         lower = np.linalg.cholesky(covariance)
-        constant = -np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1) - 0.5 * len(rows) * np.log(
-            2 * np.pi
-        )
+        pivots = np.diagonal(lower, axis1=1, axis2=2)
+        constant = -np.log(pivots).sum(axis=1) - 0.5 * len(rows) * np.log(2 * np.pi)
         inverse = np.linalg.inv(lower)
-        found = np.broadcast_to(constant, (len(values), len(location))).copy()
+        # values that this family cannot hold, such as negative ones where ln scatters, are impossible
+        apart = [
+            np.nan_to_num(family.residual(values[:, [i]], predicted[:, i]) - mean[:, row], nan=np.inf)
+            for i, row in enumerate(rows)
+        ]
+        found = np.broadcast_to(constant, (len(values), len(predicted))).copy()
         for a in range(len(rows)):
-            z = sum(inverse[:, a, b] * (values[:, np.newaxis, b] - location[:, b]) for b in range(a + 1))
-            found -= 0.5 * z**2
-        return found
+            found -= 0.5 * np.square(sum(inverse[:, a, b] * apart[b] for b in range(a + 1)))
+        if family.logarithmic:
+            with np.errstate(all="ignore"):
+                found -= np.log(values).sum(axis=1)[:, np.newaxis]
+        return np.nan_to_num(found, nan=-np.inf, posinf=-np.inf, neginf=-np.inf)
 
 
 def _effects(new: NewConditions, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Mean of what effects add to the new rows given the data, ``(M, N)``, and factors of its covariance, ``(M, N, K)``."""
     shared, known = new.problem.shared, new.known
     assert shared is not None
-    inputs = new.problem.inputs(theta)
-    scales = np.stack(
-        [np.broadcast_to(inputs[name][:, 0], len(theta)) for name in new.problem.shared_parameters], axis=-1
-    )
+    scales = new.problem.likelihood.scales(theta)
     mean, covariance = new.measured.likelihood.effects_given(theta)
     size = np.trace(covariance, axis1=1, axis2=2)[:, np.newaxis, np.newaxis]
     factor = np.linalg.cholesky(covariance + ROUNDING * size * np.eye(covariance.shape[-1]))

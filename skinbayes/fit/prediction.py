@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -239,24 +239,18 @@ def predicted(
     most = max(FEWEST_DRAWS, MOST_NUMBERS // new.problem.conditions.n_rows)
     theta = theta[:: -(-len(theta) // most)]
     rng = np.random.default_rng([seed])
-    effects, anew = _effects(measured, new, theta, rng)
     predictions = new.problem.predict(theta)
+    made = drawn_measurements(new, theta, predictions, rng)
     of_model = {name: predictions[name] for name in measured.observables}
-    measuring = measuring_at(new, of_model)
-    drawn = measuring.simulate(theta, rng, anew)
-    of_measurement = dict(zip(of_model, np.split(drawn, len(of_model), axis=-1), strict=True))
-    if measuring.shared is not None and effects is not None:
+    if made.effects is not None and made.problem.shared is not None:
         (name,) = of_model
-        at_rows = measuring.shared.at_rows(effects)
-        of_model[name] = (
-            of_model[name] * np.exp(at_rows)
-            if measuring.observations[0].noise.logarithmic
-            else of_model[name] + at_rows
-        )
+        at_rows = made.problem.shared.at_rows(np.where(new.known < 0, 0.0, made.effects))
+        logarithmic = made.problem.observations[0].noise.logarithmic
+        of_model[name] = of_model[name] * np.exp(at_rows) if logarithmic else of_model[name] + at_rows
     return Prediction(
         new.dataset.columns,
         of_model,
-        of_measurement,
+        made.values,
         (*_about_levels(new), *new.notes, *new.problem.explain(np.median(theta, axis=0))),
     )
 
@@ -272,33 +266,44 @@ def new_conditions_of(
     return at_new_conditions(fit.problem, conditions, progress, cores)
 
 
-def measuring_at(new: NewConditions, predictions: Mapping[str, FloatArray]) -> Problem:
-    """The problem at new rows with observations there, of the typical spread; ``predictions`` of each, ``(draws, N)``."""
+class DrawnMeasurements(NamedTuple):
+    """Measurements at new rows that were not made.
+
+    Attributes
+    ----------
+    problem : the problem at these rows with observations there, of the typical spread
+    effects : of all levels, ``(B, K)``: drawn given the data where these have the level, and anew for others; None without any
+    values : observable to one measurement for each draw and row, ``(B, N)``, SI
+    """
+
+    problem: Problem
+    effects: FloatArray | None
+    values: dict[str, FloatArray]
+
+
+def drawn_measurements(
+    new: NewConditions, theta: FloatArray, predictions: Mapping[str, FloatArray], rng: np.random.Generator
+) -> DrawnMeasurements:
+    """One measurement for each draw at each new row about its ``predictions``, each ``(B, N)``, with scatter and effects."""
     observed = tuple(_as_measured(old, predictions[old.name]) for old in new.measured.observations)
     spread = {
         name: np.full(new.problem.conditions.n_rows, float(np.median(values)))
         for name, values in new.measured.input_spread.items()
         if name in new.problem.conditions.values
     }
-    measuring = replace(new.problem, observations=observed, input_spread=spread)
-    measuring.__dict__["model"] = new.problem.model
-    return measuring
-
-
-def _effects(
-    measured: Problem, new: NewConditions, theta: FloatArray, rng: np.random.Generator
-) -> tuple[FloatArray | None, FloatArray | None]:
-    """Effects at the new rows, ``(B, K)``: known ones and none for new levels; known ones and drawn ones for new levels."""
-    shared = new.problem.shared
-    if shared is None:
-        return None, None
-    inputs = new.problem.inputs(theta)
-    scales = np.stack(
-        [np.broadcast_to(inputs[name][:, 0], len(theta)) for name in new.problem.shared_parameters], axis=-1
+    problem = replace(new.problem, observations=observed, input_spread=spread)
+    problem.__dict__["model"] = new.problem.model
+    effects = None
+    if problem.shared is not None:
+        known = new.measured.draw_effects(theta, rng)[:, new.known]  # that of a new level is replaced
+        anew = problem.shared.draw_new_effects(rng, problem.likelihood.scales(theta))
+        effects = np.where(new.known < 0, anew, known)
+    stacked = np.stack([predictions[o.name] for o in observed], axis=1)
+    drawn = problem.likelihood.draw_about(theta, stacked, rng, effects)
+    parts = np.split(drawn, len(observed), axis=-1)
+    return DrawnMeasurements(
+        problem, effects, {o.name: part for o, part in zip(observed, parts, strict=True)}
     )
-    given, drawn = measured.draw_effects(theta, rng), shared.draw_new_effects(rng, scales)
-    old = given[:, new.known]  # that of a new level is replaced
-    return np.where(new.known < 0, 0.0, old), np.where(new.known < 0, drawn, old)
 
 
 def _as_measured(old: Observation, predictions: FloatArray) -> Observation:

@@ -65,6 +65,16 @@ class Likelihood:
         """Simulated data, shape ``(B, M)``; effects of groups drawn anew unless given, ``(B, G)``."""
         # predictions in pieces, random numbers for all vectors together: their order does not depend on the pieces
         predicted = in_pieces(lambda part: np.stack(self._predictions(part)[1], axis=1), theta, self.size)
+        return self.draw_about(theta, predicted, rng, effects)
+
+    def draw_about(
+        self,
+        theta: FloatArray,
+        predicted: FloatArray,
+        rng: np.random.Generator,
+        effects: FloatArray | None = None,
+    ) -> FloatArray:
+        """:meth:`draw` for vectors whose predictions are known, shape ``(B, observations, N)``."""
         spread = in_pieces(self._stacked_spread, theta, self.size) if self.problem.input_spread else None
         inputs = self.problem.inputs(theta)
         shared, noise = self.problem.shared, None
@@ -113,7 +123,15 @@ class Likelihood:
 
     def width(self, theta: FloatArray) -> FloatArray:
         """Width of the noise of each datum, shape ``(B, M)``; of its ln where the noise is logarithmic."""
-        return in_pieces(self._widths, theta, self.size)
+        return in_pieces(lambda part: self._widths(*self._predictions(part)), theta, self.size)
+
+    def width_about(self, theta: FloatArray, predicted: FloatArray) -> FloatArray:
+        """:meth:`width` for vectors whose predictions are known, shape ``(B, observations, N)``."""
+        return self._widths(self.problem.inputs(theta), list(np.moveaxis(predicted, 1, 0)))
+
+    def scales(self, theta: FloatArray) -> FloatArray:
+        """Scales of what rows share, shape ``(B, P)``."""
+        return self._scales(self.problem.inputs(theta), len(theta))
 
     def independent(self, theta: FloatArray, changes: FloatArray) -> FloatArray:
         """Changes ``(B, M)`` of the data at one parameter vector ``(D,)`` as numbers that scatter independently, ``(B, M + G)``.
@@ -178,8 +196,7 @@ class Likelihood:
         density = groups.log_density_left_out(residual, width, scales, block) + jacobian
         return np.where(np.isnan(predicted).any(axis=-1, keepdims=True), np.nan, density)
 
-    def _widths(self, theta: FloatArray) -> FloatArray:
-        inputs, predicted = self._predictions(theta)
+    def _widths(self, inputs: Mapping[str, FloatArray], predicted: list[FloatArray]) -> FloatArray:
         return np.concatenate(
             [self._width(o, inputs, f) for o, f in zip(self._observations, predicted, strict=True)], axis=-1
         )

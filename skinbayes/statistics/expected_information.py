@@ -90,27 +90,32 @@ def information_on(phi: FloatArray, y: FloatArray) -> tuple[float, float]:
 
 
 def information_on_model(
-    log_density: tuple[FloatArray, FloatArray], probability: float = 0.5
+    of_first: tuple[FloatArray, FloatArray],
+    of_second: tuple[FloatArray, FloatArray],
+    probability: float = 0.5,
 ) -> tuple[float, float]:
     """Expected information of data on which of two models is right, in nats, at most ln 2; and its standard error.
 
     Parameters
     ----------
-    log_density : for data drawn from either model, ln p(y_i | model) under (the first, the second), each ``(2, M)``: entry
-        ``[k][m, i]`` is of datum i that model m made, under model k
+    of_first, of_second : for data that the first, or the second, model made, ln p(y_i | model) under the first and the second,
+        each ``(M,)``
     probability : that the first is right
 
     Examples
     --------
     >>> from scipy.stats import norm
     >>> rng = np.random.default_rng(1)
-    >>> y = np.stack([rng.standard_normal(4000), 10.0 + rng.standard_normal(4000)])
-    >>> found, _ = information_on_model((norm.logpdf(y), norm.logpdf(y, 10.0)))
+    >>> one, other = rng.standard_normal(4000), 10.0 + rng.standard_normal(3000)
+    >>> found, _ = information_on_model(*((norm.logpdf(y), norm.logpdf(y, 10.0)) for y in (one, other)))
     >>> round(found, 3)  # data that tell for sure: ln 2
     0.693
     """
     prior = np.array([probability, 1.0 - probability])
-    mixed = np.logaddexp(log_density[0] + np.log(prior[0]), log_density[1] + np.log(prior[1]))
-    gain = np.stack([log_density[0][0] - mixed[0], log_density[1][1] - mixed[1]])
-    error = prior * gain.std(axis=1, ddof=1) / np.sqrt(gain.shape[1])
-    return float(prior @ gain.mean(axis=1)), float(np.hypot(*error))
+    gains = [
+        densities[right] - np.logaddexp(densities[0] + np.log(prior[0]), densities[1] + np.log(prior[1]))
+        for right, densities in enumerate((of_first, of_second))
+    ]
+    errors = [part * gain.std(ddof=1) / np.sqrt(len(gain)) for part, gain in zip(prior, gains, strict=True)]
+    means = [gain.mean() for gain in gains]
+    return float(prior @ means), float(np.hypot(*errors))

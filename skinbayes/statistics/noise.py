@@ -269,15 +269,38 @@ class NoiseFamily:
         [[1.0, nan]]
         """
         f = np.asarray(predicted, dtype=float)
-        w = self.width(f, scale, spread, discrepancy, observed)
+        return self.draw_at(rng, f, self.width(f, scale, spread, discrepancy, observed), **shape)
+
+    def draw_at(
+        self, rng: np.random.Generator, predicted: FloatArray, width: FloatArray, **shape: ArrayLike
+    ) -> FloatArray:
+        """:meth:`draw` for a known width, as :meth:`log_density_at` is of the density.
+
+        Parameters
+        ----------
+        rng : source of randomness
+        predicted : prediction f, shape ``(B, N)``, SI
+        width : scale of the residuals, in their unit, from :meth:`width`, shape ``(B, N)``
+        **shape : values of the shape parameters
+
+        Returns
+        -------
+        ndarray
+            Shape ``(B, N)``, SI.
+
+        Examples
+        --------
+        >>> gaussian.draw_at(np.random.default_rng(1), np.ones((1, 2)), np.zeros((1, 2))).tolist()
+        [[1.0, 1.0]]
+        """
         with np.errstate(all="ignore"):
             if self.one_shape:
-                residual = w * self.standard_draw(rng, w.shape, **self._shape(shape))
+                residual = width * self.standard_draw(rng, width.shape, **self._shape(shape))
             else:
-                residual = self.standard_draw(rng, w.shape, width=w, **self._shape(shape))
+                residual = self.standard_draw(rng, width.shape, width=width, **self._shape(shape))
             if self.logarithmic:
-                return np.where(f > 0.0, f * np.exp(residual), np.nan)
-            return np.where(np.isfinite(f), f + residual, np.nan)
+                return np.where(predicted > 0.0, predicted * np.exp(residual), np.nan)
+            return np.where(np.isfinite(predicted), predicted + residual, np.nan)
 
     def check_observed(self, observed: ArrayLike) -> None:
         """Refuse data that this family can never produce.

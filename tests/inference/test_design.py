@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import stats
+from scipy.integrate import trapezoid
 
 import skinbayes as sb
 from skinbayes.errors import InputError
@@ -92,6 +94,34 @@ def test_a_datum_tells_two_models_apart_as_the_integral_says() -> None:
     assert found.information[0] < np.log(2.0)
 
 
+def test_noise_whose_shape_changes_with_its_width_has_its_own_density() -> None:
+    """Gamma data of a known shape n about a mean whose ln is normal: I = ∫∫ p ln(p/p(y)), by quadrature."""
+    modes, spread = 30.0, 0.4
+    problem = sb.build_problem(
+        "constant",
+        data={"friction_coefficient": [1.0], "normal_force": [1.0]},
+        parameters={"typical_friction_coefficient": {"lognormal": [1.0, spread]}},
+        noise={"family": "gamma", "noise_scale": modes**-0.5},
+    )
+    fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 4 * DRAWS))
+    x, y = np.linspace(-5 * spread, 5 * spread, 801), np.geomspace(0.02, 30.0, 4001)
+    weight = np.exp(-0.5 * (x / spread) ** 2)
+    weight /= weight.sum()
+    density = stats.gamma.pdf(y, modes, scale=np.exp(x)[:, np.newaxis] / modes)
+    with np.errstate(all="ignore"):
+        gain = np.where(density > 0, density * np.log(density / (weight @ density)), 0.0)
+    exact = float(trapezoid(weight @ gain, y))
+    found = fit.design({"normal_force": [1.0]})
+    assert found.information[0] == pytest.approx(exact, abs=4.0 * found.errors[0] + 0.01)
+
+
+def test_two_models_of_different_numbers_of_draws_can_be_told_apart() -> None:
+    first = normal_fit(1)
+    fewer = sb.Fit.from_draws(first.problem, first.theta()[:700] + 1.0)
+    found = first.design({"normal_force": [1.0]}, against=fewer)
+    assert 0.2 < found.information[0] < np.log(2.0)
+
+
 def test_costs_change_the_order() -> None:
     rows = {"normal_force": [1.0, 1.0], "person": ["a", "new"], "cost [1]": [1.0, 1000.0]}
     fit = normal_fit(person=BETWEEN)
@@ -104,7 +134,7 @@ def test_costs_change_the_order() -> None:
         ({"parameters": ["friction"]}, "'friction' is no free parameter"),
         ({"rows": 3}, "expected 1 to 2"),
         ({"cost": "normal_forces"}, "no numeric column 'normal_forces"),
-        ({"cost": "zero"}, "row 1: zero is not positive"),
+        ({"cost": "zero"}, r"row 1, zero: found 0; expected a value > 0"),
     ],
 )
 def test_what_cannot_be_designed_is_explained(options: dict[str, object], message: str) -> None:
