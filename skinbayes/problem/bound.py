@@ -15,6 +15,7 @@ from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Tables
+from skinbayes.forward.base import TiedRanges
 from skinbayes.problem.covariates import apply_covariates
 from skinbayes.problem.deduplicated_rows import DistinctRows, distinct_rows
 from skinbayes.problem.failures import explained
@@ -165,12 +166,54 @@ class BoundModel(Posterior):
         """
         if "model" in self.__dict__:
             return self.model
+        if self.observations:
+            return self.prepared_for_many(progress, cores)
+        self.__dict__["model"] = self.forward
+        return self.forward
+
+    def ranges(self) -> TiedRanges:
+        """How far each input reaches over the rows and nearly all of the priors, and which inputs vary together.
+
+        Returns
+        -------
+        TiedRanges
+            Name to smallest and largest value, SI.
+
+        Examples
+        --------
+        >>> low, high = problem.ranges()["rms_height"]
+        >>> low < 22.4e-6 < high
+        True
+        """
+        priors = [p.prior for p in self.free if p.prior]
+        return input_ranges(priors, self.inputs, multiples=whole_ties(self.tied))
+
+    def prepared_for_many(self, progress: Progress | None = None, cores: int = 1) -> ForwardModel:
+        """:meth:`prepare` also where there are no observations, but many parameter vectors to evaluate.
+
+        Parameters
+        ----------
+        progress, cores : as :meth:`prepare` takes them
+
+        Returns
+        -------
+        ForwardModel
+            Prepared; as it is without free parameters, or if there is nothing to prepare.
+
+        Raises
+        ------
+        InputError
+            No table can be made for the priors.
+
+        Examples
+        --------
+        >>> problem.prepared_for_many() is problem.model
+        True
+        """
         prepared = self.forward
-        if prepared.prepare is not None and self.observations and self.free:
+        if prepared.prepare is not None and self.free:
             with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
-                priors = [p.prior for p in self.free if p.prior]
-                ranges = input_ranges(priors, self.inputs, multiples=whole_ties(self.tied))
-                prepared = prepared.prepare(prepared, ranges, self.tables, progress, cores)
+                prepared = prepared.prepare(prepared, self.ranges(), self.tables, progress, cores)
         self.__dict__["model"] = prepared
         return prepared
 

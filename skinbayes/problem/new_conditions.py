@@ -13,10 +13,8 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset, as_dataset
 from skinbayes.files.dataset_rows import place_of_row
 from skinbayes.files.scatter_block import ORDER
-from skinbayes.problem.failures import FAILED, explained
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.problem import Problem
-from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.problem.rows import given_rows
 from skinbayes.problem.shared_scatter import SharedScatter
@@ -111,23 +109,21 @@ def at_new_conditions(
 
 def _prepare(problem: Problem, measured: Problem, progress: Progress | None, cores: int) -> None:
     """Give the problem what its forward model needs to be evaluated many times: that of the measured rows where it reaches."""
-    prepare, priors = problem.forward.prepare, [p.prior for p in problem.free if p.prior]
-    if prepare is None or not priors:
-        return
-    here, there = input_ranges(priors, problem.inputs), input_ranges(priors, measured.inputs)
-    inside = all(
+    by = problem.spec.rheology_by if problem.flow_curves else None
+    same_liquids = by is None or set(problem.conditions.labels[by]) <= set(measured.conditions.labels[by])
+    if problem.forward.prepare is None or not problem.free or (same_liquids and _reaches(measured, problem)):
+        problem.__dict__["model"] = measured.model
+    else:
+        problem.prepared_for_many(progress, cores)
+
+
+def _reaches(measured: Problem, problem: Problem) -> bool:
+    """Whether the inputs of measured rows reach as far as those of others."""
+    here, there = problem.ranges(), measured.ranges()
+    return here.multiples == there.multiples and all(
         name in there and there[name][0] <= low and high <= there[name][1]
         for name, (low, high) in here.items()
     )
-    by = problem.spec.rheology_by
-    if inside and (
-        by is None or not problem.flow_curves
-        or set(problem.conditions.labels[by]) <= set(measured.conditions.labels[by])
-    ):  # fmt: skip
-        problem.__dict__["model"] = measured.model
-        return
-    with explained(problem.spec.path, FAILED), np.errstate(all="ignore"):
-        problem.__dict__["model"] = prepare(problem.forward, here, problem.tables, progress, cores)
 
 
 def _shared(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -9,6 +11,8 @@ from scipy import stats
 import skinbayes as sb
 from skinbayes.errors import InputError
 from skinbayes.fit.prediction import Prediction
+from skinbayes.forward import forward_model
+from skinbayes.problem.new_conditions import at_new_conditions
 
 DRAWS = 20_000
 NOISE, BETWEEN, PRIOR = 0.05, 0.2, 1.0
@@ -167,3 +171,32 @@ def test_a_column_replaces_a_fixed_parameter() -> None:
         usual[:, 0] < 1.0
     )  # where the contact area is small it goes as 1/E* of the layer, (1 - 0.3²)/(1 - 0.5²)
     assert (other / usual)[small] == pytest.approx(0.91 / 0.75, rel=0.01)
+
+
+def test_rows_within_reach_share_the_table_of_the_fit_and_others_get_one_with_its_ties() -> None:
+    """Tied moduli of drying skin: their box alone holds skins without bridges, for which there is no table."""
+    told: list[tuple[dict[str, tuple[float, float]], dict[str, tuple[str, float]]]] = []
+
+    def prepare(model, ranges, tables, progress, cores):  # type: ignore[no-untyped-def]
+        told.append((dict(ranges), dict(ranges.multiples)))
+        return model
+
+    model = replace(forward_model("friction"), name="noted", prepare=prepare)
+    problem = sb.build_problem(
+        model,
+        data={"normal_force": [0.5, 1.0], "sphere_radius": [7e-3, 7e-3], "friction_coefficient": [1.2, 1.3]},
+        parameters={
+            "frictional_shear_stress": "15 MPa",
+            "young_modulus_layer": {"lognormal": ["7 MPa", 0.2]},
+            "young_modulus_bulk": {"same_as": "young_modulus_layer", "times": 0.003},
+            "layer_thickness": "20 um",
+        },
+        noise={"family": "lognormal", "noise_scale": 0.1},
+        surface="paper_reference",
+    )
+    inside = at_new_conditions(problem, {"normal_force": [0.7], "sphere_radius": [7e-3]})
+    assert inside.problem.model is problem.model and len(told) == 1
+    beyond = at_new_conditions(problem, {"normal_force": [2.0], "sphere_radius": [7e-3]})
+    assert beyond.problem.conditions.n_rows == 1 and len(told) == 2
+    assert told[1][1] == told[0][1] == {"young_modulus_bulk": ("young_modulus_layer", 0.003)}
+    assert told[1][0]["normal_force"] == (2.0, 2.0)
