@@ -220,8 +220,8 @@ def print_sentences(sentences: Iterable[str], title: str = "") -> None:
         _print_indented(terminal, printable(f"- {sentence}"), 1)
 
 
-def quantity_text(name: str, value: Any) -> str:
-    """A value with its unit, three digits; text as it is, a dash for none."""
+def quantity_text(name: str, value: Any, digits: int = 3, written: str | None = None) -> str:
+    """A value with its unit, that of ``written`` text if there is one; text as it is, a dash for none."""
     from skinbayes.units import format_quantity
     from skinbayes.vocabulary import QUANTITIES
 
@@ -229,4 +229,5 @@ def quantity_text(name: str, value: Any) -> str:
         return value
     if value != value:
         return "–"
-    return format_quantity(float(value), QUANTITIES[name].unit if name in QUANTITIES else "1", 3)
+    unit = QUANTITIES[name].unit if name in QUANTITIES else "1"
+    return format_quantity(float(value), unit, digits, written)

@@ -9,7 +9,15 @@ import click
 
 from skinbayes.cli.new_file import refuse_existing, write_columns
 from skinbayes.cli.options import json_option, number_option, overwrite_option, set_option, settings_of
-from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_DONE, MOST_ROWS, print_json, print_table, say
+from skinbayes.cli.output import (
+    EXIT_BAD_INPUT,
+    EXIT_DONE,
+    MOST_ROWS,
+    print_json,
+    print_table,
+    quantity_text,
+    say,
+)
 from skinbayes.defaults import SEED
 from skinbayes.errors import InputError
 
@@ -171,29 +179,16 @@ def _without_value(problem: Any, theta: Any, prediction: dict[str, Any]) -> list
 
 
 def _print(problem: Any, theta: Any, columns: dict[str, Any], prediction: dict[str, Any]) -> None:
-    from skinbayes.units import format_quantity
-    from skinbayes.vocabulary import QUANTITIES
-
-    def text(name: str, value: Any, written: str | None = None) -> str:
-        quantity = QUANTITIES.get(name)
-        if not isinstance(value, str) and value != value:
-            return "–"
-        return (
-            str(value)
-            if isinstance(value, str)
-            else format_quantity(float(value), quantity.unit if quantity else "1", written=written)
-        )
-
     values = [
-        (p.label, text(p.name, v, p.prior_text), "prior median")
+        (p.label, quantity_text(p.name, v, 4, p.prior_text), "prior median")
         for p, v in zip(problem.free, theta, strict=True)
     ]
-    values += [(p.label, text(p.name, p.value, p.prior_text), p.source) for p in problem.fixed]
+    values += [(p.label, quantity_text(p.name, p.value, 4, p.prior_text), p.source) for p in problem.fixed]
     values += [(p.label, p.prior_text, p.source) for p in problem.tied]
     print_table(("input", "value", "from"), values)
     headers = [*columns, *prediction]
     cells = [
-        [text(name, values[i]) for name, values in (*columns.items(), *prediction.items())]
+        [quantity_text(name, values[i], 4) for name, values in (*columns.items(), *prediction.items())]
         for i in range(min(MOST_ROWS, problem.conditions.n_rows))
     ]
     print_table(headers, cells, right=range(len(columns), len(headers)))
