@@ -10,11 +10,11 @@ from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.columns import read_quantity
 from skinbayes.files.reading import open_file
-from skinbayes.files.spectrum import MODES, QUANTITIES, read_spectrum
+from skinbayes.files.spectrum import MODES, QUANTITIES, spectrum_and_columns
 from skinbayes.files.stated_surface import MEASURED, StatedSurface
-from skinbayes.files.table import LARGEST_TABLE, Problems, read_table
+from skinbayes.files.table import LARGEST_TABLE, Problems
 from skinbayes.topography import MeasuredSpectrum
-from skinbayes.units import format_quantity, split_header
+from skinbayes.units import format_quantity
 
 FEWEST_ROWS = 5
 """Rows from which the scatter of a spectrum can be told from its curvature."""
@@ -55,16 +55,13 @@ def read_measured_spectrum(path: str | Path, stated: StatedSurface | None = None
         as `read_spectrum`, and for fewer than 5 rows without numbers of modes
     """
     path = Path(path)
-    spectrum = read_spectrum(path, stated)
-    table = read_table(path)
-    modes: FloatArray | None = None
-    for position, header in enumerate(table.header):
-        name, unit = split_header(header)
-        if name == MODES:
-            problems = Problems(path)
-            modes = read_quantity(table, position, QUANTITIES[MODES], unit or "1", problems)
-            problems.raise_if_any()
-    if modes is None:
+    spectrum, table, columns = spectrum_and_columns(path, stated)
+    if MODES in columns:
+        problems = Problems(path)
+        position, unit = columns[MODES]
+        modes = read_quantity(table, position, QUANTITIES[MODES], unit, problems)
+        problems.raise_if_any()
+    else:
         modes = np.full(
             spectrum.wavevector.shape, _modes_of_scatter(path, spectrum.wavevector, spectrum.node_power)
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -70,6 +71,26 @@ def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> Tabu
         profiles that no isotropic surface has; if no convention is stated, one of the other kind of spectrum is, or the
         spectrum does not give what was measured
     """
+    return spectrum_and_columns(path, stated).spectrum
+
+
+class ReadSpectrum(NamedTuple):
+    """A spectrum with the table that it was read from.
+
+    Attributes
+    ----------
+    spectrum : in the convention of the paper
+    table : the CSV
+    columns : name of each column to its position and the text of its unit
+    """
+
+    spectrum: TabulatedSpectrum
+    table: CsvTable
+    columns: dict[str, tuple[int, str]]
+
+
+def spectrum_and_columns(path: str | Path, stated: StatedSurface | None = None) -> ReadSpectrum:
+    """What `read_spectrum` reads, and what else stands in its table."""
     path = Path(path)
     table = read_table(path, max_rows=max(MAX_ROWS.values()))
     named = _columns(table)
@@ -98,7 +119,8 @@ def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> Tabu
                 spectrum = TabulatedSpectrum.from_profile(wavevector, power)
     except InputError as error:
         raise InputError(f"{path}, column '{power_name}': {error}") from None
-    return _normalised(path, spectrum, power_name, _merged(_comments(table), stated or StatedSurface()))
+    spectrum = _normalised(path, spectrum, power_name, _merged(_comments(table), stated or StatedSurface()))
+    return ReadSpectrum(spectrum, table, named)
 
 
 def _comments(table: CsvTable) -> StatedSurface:
