@@ -93,7 +93,7 @@ def read_surface(
     elif ending in _IMAGES:
         found = SurfaceFile(read_image(path, stated), path, "TIFF image")
     elif ending in _TEXT and (read := read_text(path, stated)) is not None:
-        found = SurfaceFile(*read[:1], path, read[1])
+        found = SurfaceFile(read[0], path, read[1])
     else:
         instrument = read_instrument(path, stated, channel)
         return SurfaceFile(instrument.surface, path, f"instrument file ({instrument.format})", instrument.tip_radius,

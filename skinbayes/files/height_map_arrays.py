@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from skinbayes.errors import InputError
-from skinbayes.files.surface_scale import Scale, check_pixels
+from skinbayes.files.surface_scale import Scale, check_pixels, first_line
 from skinbayes.topography import HeightMap, LineProfile
 
 
@@ -17,7 +17,7 @@ def read_array(path: Path, stated: Scale) -> HeightMap | LineProfile:
     try:
         array = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, OSError, EOFError) as error:
-        raise InputError(f"{path}: cannot be read as a NumPy array ({_first_line(error)})") from None
+        raise InputError(f"{path}: cannot be read as a NumPy array ({first_line(error)})") from None
     if array.dtype.kind not in "iuf" or array.ndim not in (1, 2):
         raise InputError(
             f"{path}: an array of {array.dtype} with {array.ndim} axes; expected numbers on one axis (a line) or two (a map)"
@@ -46,9 +46,5 @@ def read_image(path: Path, stated: Scale) -> HeightMap | LineProfile:
     except InputError:
         raise
     except Exception as error:  # damaged images fail in many ways
-        raise InputError(f"{path}: cannot be read as a TIFF image ({_first_line(error)})") from None
+        raise InputError(f"{path}: cannot be read as a TIFF image ({first_line(error)})") from None
     return stated.surface(path, height)
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0][:200]

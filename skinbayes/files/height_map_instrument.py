@@ -10,7 +10,7 @@ import numpy as np
 
 from skinbayes.errors import InputError
 from skinbayes.files.height_map_text import line_of_points
-from skinbayes.files.surface_scale import Scale, check_pixels, made
+from skinbayes.files.surface_scale import Scale, check_pixels, first_line, made
 from skinbayes.topography import HeightMap, LineProfile
 from skinbayes.units import convert_array
 
@@ -45,9 +45,8 @@ def read_instrument(path: Path, stated: Scale, channel: str | None) -> Instrumen
         except MemoryError:
             raise
         except Exception as error:  # readers of damaged files fail in many ways
-            said = (str(error).splitlines() or [""])[0][:200] or type(error).__name__
             raise InputError(
-                f"{path}: SurfaceTopography cannot read it ({said}); expected {_PLAIN}"
+                f"{path}: SurfaceTopography cannot read it ({first_line(error)}); expected {_PLAIN}"
             ) from None
 
 

@@ -47,8 +47,6 @@ def read_text(path: Path, stated: Scale) -> tuple[HeightMap | LineProfile, str] 
     rest = "\n".join(lines[begin:])
     del lines
     table = _numbers(path, rest, separator)
-    if table is None:
-        return None
     if header is not None and table.shape[1] != len(header):
         raise InputError(f"{path}: {table.shape[1]} columns below a header of {len(header)}")
     return _surface(path, table, header, stated)
@@ -102,8 +100,8 @@ def _header(path: Path, line: str) -> tuple[dict[str, float] | None, str]:
     return found, separator
 
 
-def _numbers(path: Path, text: str, separator: str) -> FloatArray | None:
-    """All numbers, shape ``(rows, columns)``, nan where there is none; None if they are not all numbers."""
+def _numbers(path: Path, text: str, separator: str) -> FloatArray:
+    """All numbers, shape ``(rows, columns)``, nan where there is none; InputError for a cell that is none."""
     from io import StringIO
 
     import pandas as pd

@@ -92,3 +92,8 @@ def made(
         return HeightMap(height, pixel_size_x=pixel_x, pixel_size_y=pixel_y, periodic=periodic)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def first_line(error: Exception) -> str:
+    """What an error of a reader says first, or its kind if it says nothing."""
+    return (str(error).splitlines() or [""])[0][:200] or type(error).__name__
