@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from skinbayes.comparison.verdicts import one
-from skinbayes.plot.style import BLUE, SMALL, inches, look, new_figure, set_title, shortened
+from skinbayes.plot.style import BLUE, GREY, SMALL, inches, look, new_figure, set_title, shortened
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +53,7 @@ def plot_comparison(comparison: Comparison, width: str | None = None) -> Figure:
         )  # fmt: skip
         axes = figure.subplots(rows, columns, sharey=True, squeeze=False).reshape(-1)
         for ax, panel in zip(axes, panels, strict=False):
-            ax.axvline(0.0, color="#8A8A8A", linewidth=0.8)
+            ax.axvline(0.0, color=GREY, linewidth=0.8)
             ax.errorbar(
                 panel.behind, places, xerr=panel.errors, fmt="o", color=BLUE, markersize=4.5, elinewidth=1.2
             )

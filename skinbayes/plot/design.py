@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.plot.style import BLUE, SMALL, VERMILLION, inches, look, new_figure, set_title, shortened
+from skinbayes.plot.style import BLUE, GREY, SMALL, VERMILLION, inches, look, new_figure, set_title, shortened
 from skinbayes.plot.symbols import figure_text
 from skinbayes.units import format_quantity
 from skinbayes.vocabulary import QUANTITIES
@@ -43,7 +43,7 @@ def plot_design(design: Design, width: str | None = None) -> Figure:
             size, 0.22 * len(rows) + 1.25, left=0.3 + 0.072 * max(map(len, names)), right=0.3, bottom=0.55, top=0.5
         )  # fmt: skip
         ax = figure.subplots()
-        ax.axvline(0.0, color="#8A8A8A", linewidth=0.8)
+        ax.axvline(0.0, color=GREY, linewidth=0.8)
         for colour, chosen in ((BLUE, False), (VERMILLION, True)):
             here = [i for i in places if (rows[i] in turn) == chosen]
             ax.errorbar(

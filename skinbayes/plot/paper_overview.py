@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.plot.style import BLUE, SMALL, VERMILLION, WIDTH, inches, key_below, look, new_figure
+from skinbayes.plot.style import BLUE, GREY, SMALL, VERMILLION, WIDTH, inches, key_below, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,7 +69,7 @@ def plot_overview(rows: Sequence[Compared], width: str | None = None) -> Figure:
                 markeredgewidth=0.0,
                 label=name,
             )
-        ax.axvline(0.0, color="#8A8A8A", linewidth=0.8)
+        ax.axvline(0.0, color=GREY, linewidth=0.8)
         ax.set_xscale("symlog", linthresh=LINEAR, linscale=0.5)
         ticks = (-100, -10, -1, 0, 1, 10, 100)
         ax.set_xticks(ticks, [f"{tick:+d}".replace("-", "−").replace("+0", "0") for tick in ticks])

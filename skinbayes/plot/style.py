@@ -26,7 +26,10 @@ BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, VERMILLION, PURPLE = (
 SERIES = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION)
 """Colours of curves in order; yellow is left out because it is faint on white."""
 
-PRIOR, POSTERIOR, OBSERVED = "#8A8A8A", BLUE, VERMILLION
+GREY = "#8A8A8A"
+"""Of what is compared with, and of zero."""
+
+PRIOR, POSTERIOR, OBSERVED = GREY, BLUE, VERMILLION
 
 WIDTH = 5.2
 """Width of a figure, inch: shown 340 pixels wide on a phone, its text is still about 9 pixels high."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.plot.numbers import prefix_of
-from skinbayes.plot.style import BLUE, SERIES, SMALL, VERMILLION, inches, look, new_figure, shortened
+from skinbayes.plot.style import BLUE, GREY, SERIES, SMALL, VERMILLION, inches, look, new_figure, shortened
 from skinbayes.topography import HeightMap
 
 if TYPE_CHECKING:
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 MOST_SHOWN = 500
 """Pixels along a side of a map that is drawn; of more the means of squares are."""
-
-GREY = "#8A8A8A"
 
 
 def plot_surface(one: MeasuredSurface, width: str | None = None) -> Figure:
