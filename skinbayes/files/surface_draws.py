@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +15,12 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import load_dataset
 from skinbayes.files.reading import open_file
 from skinbayes.files.table import LARGEST_TABLE
-from skinbayes.roughness import SelfAffineSpectrum
+from skinbayes.roughness.spectrum import SELF_AFFINE_PARAMETERS
 from skinbayes.sealed import DamagedFile, checked
 from skinbayes.vocabulary import QUANTITIES
 
-ROUGHNESS = tuple(field.name for field in fields(SelfAffineSpectrum))
-"""The five parameters of a self-affine surface."""
+ROUGHNESS = SELF_AFFINE_PARAMETERS
+"""The parameters of a surface that are drawn."""
 
 RESULT = "result.nc"
 """Of a run directory."""

@@ -14,9 +14,10 @@ from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.lubrication import FlowCurve
 from skinbayes.roughness import TabulatedSpectrum
+from skinbayes.roughness.spectrum import SELF_AFFINE_PARAMETERS
 from skinbayes.vocabulary import Quantity
 
-ROUGHNESS_INPUTS = ("rms_height", "hurst_exponent", "wavevector_min", "wavevector_rolloff", "wavevector_max")
+ROUGHNESS_INPUTS = SELF_AFFINE_PARAMETERS
 """Inputs of a self-affine spectrum; a named surface supplies all of them."""
 
 Inputs = Mapping[str, FloatArray]

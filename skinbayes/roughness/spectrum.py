@@ -7,7 +7,7 @@ wavelength), C in m^4.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
@@ -252,3 +252,7 @@ class SelfAffineSpectrum:
             remainder = np.exp(4.0 * end) * _power_integral(turn - end, 4.0) + remainder
         nodes, remainder = np.exp(place) * q_r[..., None], scale * remainder
         return SlopeQuadrature(nodes, weights, remainder)
+
+
+SELF_AFFINE_PARAMETERS = tuple(field.name for field in fields(SelfAffineSpectrum))
+"""Names of the five numbers that make a self-affine spectrum."""
