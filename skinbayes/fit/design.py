@@ -203,9 +203,10 @@ def design(
     def worth(wanted: list[int]) -> tuple[float, float]:
         if against is not None:
             first, second = asked
-            return information_on_model(
-                *((first.log_predictive(made, wanted), second.log_predictive(made, wanted)) for made in asked)
+            of_first, of_second = (
+                (first.log_predictive(made, wanted), second.log_predictive(made, wanted)) for made in asked
             )
+            return information_on_model(of_first, of_second)
         if parameters:
             return information_on(phi, np.hstack([values[:, wanted] for values in asked[0].values]))
         return information(asked[0].log_density(asked[0], wanted))
