@@ -90,11 +90,10 @@ class Design:
     @property
     def order(self) -> list[int]:
         """Rows of the candidates, the best first: by information, or by information over cost."""
-        return np.argsort(-self._worth, kind="stable").tolist()
+        return np.argsort(-self._per_cost(self.information), kind="stable").tolist()
 
-    @property
-    def _worth(self) -> FloatArray:
-        return self.information if self.costs is None else self.information / self.costs
+    def _per_cost(self, values: FloatArray) -> FloatArray:
+        return values if self.costs is None else values / self.costs
 
     def sentence(self) -> str:
         """What to measure, and what it would tell.
@@ -122,16 +121,11 @@ class Design:
                 f"would tell {best.information:.2f} ± {best.error:.2f} nats about {what}: as much as a width that becomes "
                 f"{np.exp(max(best.information, 0.0)):.2g} times smaller"
             )
-        several = len(self.chosen) > 1
-        ahead = self._worth[self.order[0]] - self._worth[self.order[-1]]
-        tied = not several and ahead < 2.0 * float(
-            np.hypot(self.errors[self.order[0]], self.errors[self.order[-1]])
-        )
-        return f"Row{'s' if several else ''} {rows} {gained}." + (
-            " All candidates tell about the same, within the error of this estimate."
-            if tied and len(self.order) > 1
-            else ""
-        )
+        several, first, last = len(self.chosen) > 1, self.order[0], self.order[-1]
+        worth, errors = self._per_cost(self.information), self._per_cost(self.errors)
+        alike = first != last and worth[first] - worth[last] < 2.0 * np.hypot(errors[first], errors[last])
+        more = " All candidates tell about the same, within the error of this estimate."
+        return f"Row{'s' if several else ''} {rows} {gained}.{more if alike and not several else ''}"
 
     def to_frame(self) -> pandas.DataFrame:
         """The candidates with what each would tell.

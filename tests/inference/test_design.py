@@ -126,6 +126,10 @@ def test_costs_change_the_order() -> None:
     rows = {"normal_force": [1.0, 1.0], "person": ["a", "new"], "cost [1]": [1.0, 1000.0]}
     fit = normal_fit(person=BETWEEN)
     assert fit.design(rows).order == [1, 0] and fit.design(rows, cost="cost").order == [0, 1]
+    # of one cost: what differs without it differs with it, whatever its unit
+    rows["cost [1]"] = [1000.0, 1000.0]
+    assert "All candidates" not in fit.design(rows, cost="cost").sentence()
+    assert "All candidates" in fit.design(rows | {"person": ["new", "new"]}, cost="cost").sentence()
 
 
 @pytest.mark.parametrize(
