@@ -22,6 +22,7 @@ ITERATIONS = 40
 
 _CLOSE = 1e-4  # gain of the mean log-density at which they end
 _RIDGE = 1e-9  # of the variances, added to them
+_LEAST_VARIANCE = 1e-30  # of points without any, so that they have a density
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class StudentMixture:
         apart = self.means - mean
         covariance = np.einsum("k,kij,klj->il", self.weights, self.factors, self.factors)
         covariance += np.einsum("k,ki,kj->ij", self.weights, apart, apart)
-        factor = np.linalg.cholesky(covariance)
+        factor = _lower_factor(covariance)
         return StudentMixture(
             np.ones(1), mean[np.newaxis], factor[np.newaxis], np.array([DEGREES_OF_FREEDOM[0]])
         )
@@ -220,9 +221,11 @@ def _begun(x: FloatArray, count: int, rng: np.random.Generator, weights: FloatAr
     """Components at points far from each other (k-means++), each as wide as the whole over their number."""
     dimension = x.shape[1]
     mean = weights @ x / weights.sum()
-    covariance = np.atleast_2d(np.cov(x.T, aweights=weights))
+    alone = np.square(weights).sum() > (1 - _RIDGE) * weights.sum() ** 2
+    # one point with all the weight has no spread: a small part of what all points have
+    covariance = np.atleast_2d(_RIDGE * np.cov(x.T, ddof=0) if alone else np.cov(x.T, aweights=weights))
     covariance[np.diag_indices_from(covariance)] *= 1 + _RIDGE
-    whole = np.linalg.cholesky(covariance)
+    whole = _lower_factor(covariance)
     white = (x - mean) @ np.linalg.inv(whole).T
     places = [int(rng.choice(len(x), p=weights / weights.sum()))]
     nearest = np.full(len(x), np.inf)
@@ -236,3 +239,25 @@ def _begun(x: FloatArray, count: int, rng: np.random.Generator, weights: FloatAr
     means = x[places] if count > 1 else mean[np.newaxis]
     factors = np.repeat(whole[np.newaxis] / count ** (1 / dimension), count, axis=0)
     return StudentMixture(np.full(count, 1 / count), means, factors, np.full(count, 6.0))
+
+
+def _lower_factor(covariance: FloatArray) -> FloatArray:
+    """Lower Cholesky factor of a covariance; one too thin for double precision gets as little width as makes it a matrix.
+
+    Examples
+    --------
+    >>> thin = np.array([[1.0, 1.0], [1.0, 1.0]])  # of points on a line
+    >>> factor = _lower_factor(thin)
+    >>> bool(np.abs(factor @ factor.T - thin).max() < 1e-10)
+    True
+    """
+    try:
+        return np.asarray(np.linalg.cholesky(covariance))
+    except np.linalg.LinAlgError:
+        pass
+    scale = np.sqrt(np.maximum(np.diagonal(covariance), _LEAST_VARIANCE))
+    values, vectors = np.linalg.eigh(covariance / scale[:, np.newaxis] / scale)
+    least = len(scale) * np.finfo(float).eps * max(float(values[-1]), 1.0)
+    root = (vectors * np.sqrt(np.maximum(values, least))).T
+    triangle = np.linalg.qr(root, mode="r").T  # the triangle of a square root needs no positive matrix
+    return np.asarray(scale[:, np.newaxis] * triangle * np.sign(np.diagonal(triangle)))

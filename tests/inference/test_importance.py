@@ -158,6 +158,34 @@ def test_a_mixture_fitted_to_weighted_points_is_that_of_what_they_weigh():
     assert single.weights.size == 1 and kept.weights.size == fitted.weights.size
 
 
+@pytest.mark.parametrize("kind", ["thin", "one point", "a constant coordinate", "far points", "one weight"])
+def test_a_mixture_of_points_too_thin_for_double_precision_is_one_all_the_same(kind):
+    """Ten thousand rows leave ridges that are thinner against their length than a covariance can hold."""
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        dimension, count = int(rng.integers(1, 8)), int(rng.integers(3, 400))
+        stretched = np.linalg.qr(rng.normal(size=(dimension, dimension)))[0] * 10 ** rng.uniform(
+            -12, 3, dimension
+        )
+        x = rng.normal(size=(count, dimension)) @ stretched.T + 10 ** rng.uniform(-3, 6) * rng.normal(
+            size=dimension
+        )
+        weights = np.exp(10 ** rng.uniform(-2, 2) * rng.normal(size=count))
+        if kind == "one point":
+            x[:] = x[0]
+        elif kind == "a constant coordinate":
+            x[:, 0] = 3.0
+        elif kind == "far points":
+            x[:3] += 1e8
+        elif kind == "one weight":
+            weights = np.full(count, 1e-320)
+            weights[0] = 1.0
+        halves = (weights[::2], weights[1::2])
+        mixture = fit_mixture(x[::2], x[1::2], rng, weights=halves).with_wide_component(0.1, 3.0)
+        assert np.isfinite(mixture.draw(100, rng)).all()
+        assert not np.isnan(mixture.log_density(x)).any()
+
+
 @pytest.mark.parametrize(("target", "log_evidence", "quantiles"), [
     (Known(normal, 2), 2.0, norm.ppf(LEVELS)),
     (Known(normal, 8), 2.0, norm.ppf(LEVELS)),
