@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 import sys
@@ -93,11 +94,28 @@ def install(modules: dict[str, str], entry_points: str, folder: Path) -> str:
     return f"import sys; sys.path.insert(0, {str(site)!r}); "
 
 
-def command(start: str, words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", f"{start}from skinbayes.cli import main; sys.argv[1:] = {words}; main()"],
-        cwd=folder, capture_output=True, text=True, timeout=300,
-    )  # fmt: skip
+ONE_AFTER_THE_OTHER = """
+import contextlib, io, json
+from skinbayes.cli import main
+for words in {commands}:
+    sys.argv[1:], status, said = words, 0, io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
+        try:
+            main()
+        except SystemExit as ended:
+            status = ended.code or 0
+    print(json.dumps([status, said.getvalue()]))
+"""
+
+
+def commands(start: str, folder: Path, *words: list[str]) -> list[tuple[int, str]]:
+    """Exit status and what is said of commands, in a process of their own that knows of the installed package."""
+    program = start + ONE_AFTER_THE_OTHER.format(commands=list(words))
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=folder, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    return [tuple(json.loads(line)) for line in done.stdout.splitlines()]
 
 
 MODEL_FILE = """
@@ -131,15 +149,16 @@ def test_an_installed_package_offers_its_model_to_the_command_line(
     (tmp_path / "cream.csv").write_text(
         "cream_mass_per_area [mg/cm^2],friction_coefficient [1]\n0,0.5\n1,0.8\n", encoding="utf-8"
     )
-    for words in (["check", "cream.toml"], ["show", "cream.csv"], ["check", "forearm-glass"]):
-        done = command(start, words, tmp_path)
-        expected = 0 if words[1] != "cream.toml" else status
-        assert done.returncode == expected, done.stderr
-        if expected:
-            assert (
-                "the forward model 'coated-skin' is offered by the installed package 'of-ones-own', but cannot be used"
-                in done.stderr
-            )
+    first, *others = commands(
+        start, tmp_path, ["check", "cream.toml"], ["show", "cream.csv"], ["check", "forearm-glass"]
+    )
+    assert first[0] == status, first[1]
+    if status:
+        assert (
+            "the forward model 'coated-skin' is offered by the installed package 'of-ones-own', but cannot be used"
+            in first[1]
+        )
+    assert [status for status, _ in others] == [0, 0], others
 
 
 ENGINES_PAGE = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8")
@@ -180,16 +199,21 @@ def test_an_installed_package_offers_noise_and_an_engine(tmp_path: Path) -> None
     (tmp_path / "mine.toml").write_text(CONSTANT, encoding="utf-8")
     (tmp_path / "cauchy.toml").write_text(CONSTANT.replace("laplace", "cauchy"), encoding="utf-8")
     (tmp_path / "readings.csv").write_text("friction_coefficient [1]\n0.5\n0.6\n0.9\n", encoding="utf-8")
-    done = command(start, ["fit", "mine.toml", "--engine", "prior-importance", "--ess", "100"], tmp_path)
-    assert done.returncode == 0, done.stderr
-    for words, said in (
+    (fitted,) = commands(
+        start, tmp_path, ["fit", "mine.toml", "--engine", "prior-importance", "--ess", "100"]
+    )
+    assert fitted[0] == 0, fitted[1]
+    refusals = (
         (["check", "cauchy.toml"], "noise.family: the noise family 'cauchy' is offered by the installed package 'of-ones-own'"),
         (["fit", "mine.toml", "--engine", "gone"], "engine 'gone' is offered by the installed package 'of-ones-own', but cannot"),
         (["fit", "mine.toml", "--engine", "a-class"], "an object with run"),
         (["fit", "mine.toml", "--engine", "prior-imports"], "did you mean 'prior-importance'"),
         (["fit", "mine.toml", "--engine", "nested", "--engine-option", "live_points=1"], "at least 20"),
-    ):  # fmt: skip
-        refused = command(start, words, tmp_path)
-        assert refused.returncode == 2 and said in refused.stderr and "Traceback" not in refused.stderr
-        assert len(refused.stderr.splitlines()) == 1
-    assert command(start, ["check", "forearm-glass"], tmp_path).returncode == 0  # the others disturb nobody
+    )  # fmt: skip
+    *refused, (status, _) = commands(
+        start, tmp_path, *(words for words, _ in refusals), ["check", "forearm-glass"]
+    )
+    for (_, expected), (its_status, said) in zip(refusals, refused, strict=True):
+        assert its_status == 2 and expected in said and "Traceback" not in said
+        assert len(said.splitlines()) == 1
+    assert status == 0  # the others disturb nobody

@@ -70,6 +70,7 @@ def test_sliding_and_pressing_make_one_model(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_one_loss_in_sliding_and_pressing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -149,10 +149,17 @@ def test_an_edited_copy_of_the_data_is_told(run: Path, tmp_path: Path) -> None:
 # -- and what to do helps -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name", ["result.nc", *INPUTS, "steps/segment-000003.h5", "steps/segment-000001.h5", "steps/header.json"]
-)
-@pytest.mark.parametrize("how", ["damaged", "removed"])
+QUICKLY = {
+    ("damaged", "result.nc"), ("removed", "run.json"), ("damaged", "data/data.csv"), ("damaged", "steps/segment-000001.h5"),
+    ("removed", "steps/segment-000003.h5"), ("damaged", "steps/header.json"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("how", "name"), [
+    pytest.param(how, name, marks=() if (how, name) in QUICKLY else pytest.mark.slow)
+    for name in ("result.nc", *INPUTS, "steps/segment-000003.h5", "steps/segment-000001.h5", "steps/header.json")
+    for how in ("damaged", "removed")
+])  # fmt: skip
 def test_a_damaged_run_resumes_to_the_same(
     problem: Problem, run: Path, whole: Fit, name: str, how: str, tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
