@@ -8,6 +8,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import RESERVED_NAMES, ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
+from skinbayes.forward.base import partners
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.roughness import PowerSpectrum
@@ -69,9 +70,9 @@ def check_required(
                     "."
                 )
             )
-    for name, other in forward.goes_with.items():
-        if name in given and other not in given:
-            raise InputError(f"{spec.path}: '{name}' has no effect without {other}; drop it, or give {other}")
+    for name in (name for name in forward.goes_with if name in given):
+        if missing := " and ".join(other for other in partners(forward.goes_with, name) if other not in given):
+            raise InputError(f"{spec.path}: '{name}' has no effect without {missing}; drop it, or give {missing}")
     inert = [name for name in ROUGHNESS_INPUTS if name in given and name != "rms_height"]
     if table is not None and inert:
         raise InputError(

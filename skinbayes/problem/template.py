@@ -14,6 +14,7 @@ from skinbayes.files.parameter_block import label_column
 from skinbayes.files.scatter_block import ORDER
 from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
+from skinbayes.forward.base import partners
 from skinbayes.problem.joint_bind import experiment_of
 from skinbayes.problem.rheology import REPLACED
 from skinbayes.units import split_header
@@ -174,6 +175,9 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
     }
     needed = "the forward model needs it and the model file does not give it"
     own = _own_columns(spec)
+    for name in (name for name in forward.goes_with if name in given):
+        without = (other for other in partners(forward.goes_with, name) if other not in given)
+        found |= dict.fromkeys(without, f"{name} has no effect without it")
     for entry in (*forward.required, *ROUGHNESS_INPUTS):
         here = given | set(found)
         if isinstance(entry, str):
