@@ -117,6 +117,7 @@ def check_derived(
     if not spec.derived:
         return
     known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names) | set(further)
+    known |= {p.label for p in parameters if p.by_column}
     taken = {*QUANTITIES, *LABELS, *RESERVED_NAMES, *known}
     for name, block in spec.derived.items():
         if name in taken or not (name.isidentifier() and name.isascii()):

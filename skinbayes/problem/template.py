@@ -171,13 +171,17 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
     if spec.rheology is not None:
         given.add(REPLACED)
     found = {
-        name: "it varies in the conditions of the model" for name in spec.conditions if name not in given
+        name: "it varies in the conditions of the model"
+        for name, values in spec.conditions.items()
+        if name not in given and values.dtype.kind == "f"
     }
     needed = "the forward model needs it and the model file does not give it"
     own = _own_columns(spec)
     for name in (name for name in forward.goes_with if name in given):
         without = (other for other in partners(forward.goes_with, name) if other not in given)
         found |= dict.fromkeys(without, f"{name} has no effect without it")
+    for covariate in spec.covariates:
+        found.setdefault(covariate.column, f"covariate '{covariate.name}' of {covariate.acts_on}")
     for entry in (*forward.required, *ROUGHNESS_INPUTS):
         here = given | set(found)
         if isinstance(entry, str):
@@ -191,9 +195,6 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
         found |= dict.fromkeys(missing[best], needed)
         others = "; or ".join(" and ".join(names) for i, names in enumerate(missing) if i != best)
         notes.append(f"Instead of {' and '.join(missing[best])}: {others}.")
-    for covariate in spec.covariates:
-        if covariate.column not in found:
-            found[covariate.column] = f"covariate '{covariate.name}' of {covariate.acts_on}"
     along = (
         {}
         if spec.discrepancy is None
