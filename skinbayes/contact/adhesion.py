@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinbayes.arrays import ArrayLike, FloatArray, floats
+from skinbayes.arrays import ArrayLike, BoolArray, FloatArray, floats
 
 
 class AdhesiveSphere(NamedTuple):
@@ -160,7 +160,8 @@ def tabor_parameter(
     )
     with np.errstate(all="ignore"):
         found = np.cbrt(radius * np.square(work / modulus)) / reach
-        return np.asarray(np.where(_possible(radius, modulus, work) & (reach > 0.0), found, np.nan))[()]
+        possible = _possible(radius, modulus, work) & (reach > 0.0)
+        return np.asarray(np.where(possible, found, np.nan))[()]
 
 
 def jkr_carried_force(force: FloatArray, radius: FloatArray, work: FloatArray) -> FloatArray:
@@ -170,7 +171,7 @@ def jkr_carried_force(force: FloatArray, radius: FloatArray, work: FloatArray) -
     return np.asarray(np.where(work > 0.0, force + third + root, np.where(force >= 0.0, force, np.nan)))
 
 
-def _possible(radius: FloatArray, modulus: FloatArray, work: FloatArray) -> FloatArray:
+def _possible(radius: FloatArray, modulus: FloatArray, work: FloatArray) -> BoolArray:
     return np.asarray((np.minimum(radius, modulus) > 0.0) & (work >= 0.0))
 
 

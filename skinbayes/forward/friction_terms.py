@@ -52,7 +52,8 @@ FEWEST_TABOR = 5.0
 """Tabor parameter from which the contact is that of Johnson, Kendall and Roberts."""
 
 NOT_JKR = {
-    "not_jkr": f"the Tabor parameter is below {FEWEST_TABOR:g}, where attraction around the contact matters and its size is less than computed"
+    "not_jkr": f"the Tabor parameter is below {FEWEST_TABOR:g}, where attraction around the contact matters and the contact is "
+    "smaller than computed"
 }
 """The flag and what it says."""
 
@@ -85,7 +86,8 @@ def under_adhesion(inputs: Inputs) -> Inputs:
     if "work_of_adhesion" not in inputs:
         return inputs
     force, radius, work = (
-        np.asarray(inputs[name], dtype=float) for name in ("normal_force", "sphere_radius", "work_of_adhesion")
+        np.asarray(inputs[name], dtype=float)
+        for name in ("normal_force", "sphere_radius", "work_of_adhesion")
     )
     return {**inputs, "normal_force": jkr_carried_force(force, radius, work)}
 
@@ -112,12 +114,12 @@ def parts_of(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     carrying = under_adhesion(inputs)
     share = carried_share(inputs, carrying)
     pressure = pressure_on_skin_of(carrying)
-    area = total_area(pressure, variance_of(inputs, tables), inputs["yield_stress"], inputs["area_correction"])
+    area = total_area(
+        pressure, variance_of(inputs, tables), inputs["yield_stress"], inputs["area_correction"]
+    )
     run_in: FloatArray | float = 1.0
     if "run_in_ratio" in inputs:
-        run_in = run_in_factor(
-            inputs["cycle"], inputs["run_in_cycles"], run_in_ratio=inputs["run_in_ratio"]
-        )
+        run_in = run_in_factor(inputs["cycle"], inputs["run_in_cycles"], run_in_ratio=inputs["run_in_ratio"])
     boundary = coefficient(inputs["frictional_shear_stress"], area, pressure)
     parts = {BOUNDARY: np.asarray(boundary * share * grown(inputs) * run_in)}
     if "shear_pressure_coefficient" in inputs:

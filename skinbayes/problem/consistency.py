@@ -71,8 +71,11 @@ def check_required(
                 )
             )
     for name in (name for name in forward.goes_with if name in given):
-        if missing := " and ".join(other for other in partners(forward.goes_with, name) if other not in given):
-            raise InputError(f"{spec.path}: '{name}' has no effect without {missing}; drop it, or give {missing}")
+        lacking = " and ".join(other for other in partners(forward.goes_with, name) if other not in given)
+        if lacking:
+            raise InputError(
+                f"{spec.path}: '{name}' has no effect without {lacking}; drop it, or give {lacking}"
+            )
     inert = [name for name in ROUGHNESS_INPUTS if name in given and name != "rms_height"]
     if table is not None and inert:
         raise InputError(

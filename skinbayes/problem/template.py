@@ -190,6 +190,7 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
             continue
         missing = [[name for name in names if name not in here] for names in entry]
         if not all(missing):  # one alternative is complete
+            notes += _instead(entry, missing, given)
             continue
         best = _best(entry, missing, own)
         found |= dict.fromkeys(missing[best], needed)
@@ -203,6 +204,16 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
     along |= {} if spec.correlation is None else {spec.correlation.along: "the noise is correlated along it"}
     found |= {name: why for name, why in along.items() if name != ORDER and name not in found}
     return found
+
+
+def _instead(entry: tuple[tuple[str, ...], ...], missing: list[list[str]], given: set[str]) -> list[str]:
+    """A note on what may stand in place of columns that the conditions of the model made complete."""
+    chosen = [name for name in entry[missing.index([])] if name not in given]
+    others = [
+        [name for name in names if name not in given] for names in entry if not set(chosen) <= set(names)
+    ]
+    told = "; or ".join(" and ".join(names) for names in others if names)
+    return [f"Instead of {' and '.join(chosen)}: {told}."] if chosen and told else []
 
 
 def _best(entry: tuple[tuple[str, ...], ...], missing: list[list[str]], own: set[str]) -> int:

@@ -52,10 +52,15 @@ BALL = 'sphere_radius = "8 mm"\nfrictional_shear_stress = "10 MPa"\n'
 LOADS = np.geomspace(0.02, 2.0, 8)
 
 
-def problem(folder: Path, parameters: str, columns: dict[str, object] | None = None, noise: str = "0.1") -> Problem:
+def problem(
+    folder: Path, parameters: str, columns: dict[str, object] | None = None, noise: str = "0.1"
+) -> Problem:
     columns = {"normal_force [N]": LOADS} if columns is None else columns
     rows = zip(*columns.values(), strict=True)
-    lines = [",".join([*columns, "friction_coefficient [1]"]), *(",".join(map(str, [*row, 1.0])) for row in rows)]
+    lines = [
+        ",".join([*columns, "friction_coefficient [1]"]),
+        *(",".join(map(str, [*row, 1.0])) for row in rows),
+    ]
     (folder / "mine.csv").write_text("\n".join(lines), encoding="utf-8")
     return load_problem(write_model(folder, MODEL.format(parameters=parameters, noise=noise)))
 
@@ -72,9 +77,7 @@ def test_without_terms_nothing_changes_to_the_last_bit(tmp_path: Path) -> None:
     found = problem(tmp_path, SKIN + BALL)
     pressure = found.derived([])["nominal_pressure"][0]
     area = total_contact_area(pressure, twice_stress_variance(surface, skin), yield_stress=np.inf)
-    assert_array_equal(
-        found.predict_data([]), friction_coefficient(10e6, area, nominal_pressure=pressure)
-    )
+    assert_array_equal(found.predict_data([]), friction_coefficient(10e6, area, nominal_pressure=pressure))
     assert "friction_coefficient_boundary" not in found.derived([])
 
 
@@ -92,7 +95,9 @@ OFF = {
 def test_a_term_of_no_size_is_none(tmp_path: Path, term: str) -> None:
     columns = {"normal_force [N]": LOADS, "dwell_time [s]": np.arange(8.0), "cycle [1]": np.arange(1, 9)}
     assert_allclose(
-        friction(tmp_path, SKIN + BALL + OFF[term], columns), friction(tmp_path, SKIN + BALL, columns), rtol=1e-14
+        friction(tmp_path, SKIN + BALL + OFF[term], columns),
+        friction(tmp_path, SKIN + BALL, columns),
+        rtol=1e-14,
     )
 
 
@@ -133,7 +138,9 @@ def test_a_rough_ball_that_sticks_rubs_as_under_the_load_that_it_carries(tmp_pat
 
 def test_occlusion_is_a_softer_layer(tmp_path: Path) -> None:
     columns = {"normal_force [N]": [0.2] * 3, "dwell_time [s]": [0, 20, 1e6]}
-    found = friction(tmp_path, SKIN + BALL + 'occluded_modulus_ratio = 0.04\nocclusion_time = "20 s"', columns)
+    found = friction(
+        tmp_path, SKIN + BALL + 'occluded_modulus_ratio = 0.04\nocclusion_time = "20 s"', columns
+    )
     for row, modulus in ((0, "7 MPa"), (2, "0.28 MPa")):
         soft = SKIN.replace("7 MPa", modulus)
         assert friction(tmp_path, soft + BALL, columns)[row] == pytest.approx(found[row], rel=1e-12)
@@ -170,7 +177,9 @@ def test_what_a_term_needs(tmp_path: Path) -> None:
     ):
         with pytest.raises(InputError, match=f"no effect without {missing}"):
             problem(tmp_path, SKIN + BALL + given)
-    with pytest.raises(InputError, match="work_of_adhesion enlarges the contact of a ball, and nominal_contact_area"):
+    with pytest.raises(
+        InputError, match="work_of_adhesion enlarges the contact of a ball, and nominal_contact_area"
+    ):
         problem(tmp_path, SKIN + BALL + 'work_of_adhesion = "5 mJ/m^2"\nnominal_contact_area = "1 cm^2"')
     path = write_model(
         tmp_path, MODEL.format(parameters=SKIN + BALL + OFF["dwell"] + "\n" + OFF["run_in"], noise="0.1")
@@ -179,7 +188,9 @@ def test_what_a_term_needs(tmp_path: Path) -> None:
 
 
 def test_a_hard_tip_is_marked(tmp_path: Path) -> None:
-    tip = SMOOTH.replace("100 kPa", "3 GPa") + BALL.replace("8 mm", "20 nm") + 'work_of_adhesion = "50 mJ/m^2"'
+    tip = (
+        SMOOTH.replace("100 kPa", "3 GPa") + BALL.replace("8 mm", "20 nm") + 'work_of_adhesion = "50 mJ/m^2"'
+    )
     loads = {"normal_force [N]": [1e-8, 2e-8]}
     assert "Tabor parameter" in problem(tmp_path, tip, loads).explain([])[-1]
     soft = problem(tmp_path, SMOOTH + BALL + 'work_of_adhesion = "50 mJ/m^2"').explain([])
@@ -223,7 +234,9 @@ def made(folder: Path, study: str) -> Problem:
 @pytest.mark.parametrize("simulations", [8, pytest.param(100, marks=pytest.mark.slow)])
 def test_truths_are_covered(tmp_path: Path, study: str, simulations: int) -> None:
     """Each of five tests of a parameter fails by chance in one of 2000."""
-    count = 3 if (simulations, study) == (8, "occlusion") else simulations  # each skin has an integral of its own there
+    count = (
+        3 if (simulations, study) == (8, "occlusion") else simulations
+    )  # each skin has an integral of its own there
     found = recover(made(tmp_path, study), count, seed=5)
     assert found.sizes.min() > 200
     failed = {name: failed_tests(found.levels[:, i]) for i, name in enumerate(found.names)}

@@ -37,7 +37,10 @@ def test_jkr_balances_the_load_and_pulls_off_where_it_should():
     a, modulus, work = found.contact_radius, *BALL.values()
     # Hertz's pressure less that of a flat punch of the same stress intensity at the edge
     np.testing.assert_allclose(
-        4 * modulus * a**3 / (3 * 8e-3) - np.sqrt(8 * np.pi * work * modulus * a**3), load, rtol=1e-9, atol=1e-12
+        4 * modulus * a**3 / (3 * 8e-3) - np.sqrt(8 * np.pi * work * modulus * a**3),
+        load,
+        rtol=1e-9,
+        atol=1e-12,
     )
     assert found.pull_off_force[0] == pytest.approx(-load[0])
     assert np.isnan(jkr_contact(1.001 * load[0], 8e-3, **BALL).contact_radius)
@@ -79,9 +82,9 @@ def test_the_tabor_parameter_says_which_theory_holds(tabor, least, most):
     # the parameter of a made-up sphere, from its definition
     reach, radius, modulus = 0.5e-9, 1e-6, 1e9
     work = modulus * reach * np.sqrt(tabor**3 * reach / radius)
-    assert tabor_parameter(
-        radius, work, reduced_modulus=modulus, range_of_attraction=reach
-    ) == pytest.approx(tabor)
+    assert tabor_parameter(radius, work, reduced_modulus=modulus, range_of_attraction=reach) == pytest.approx(
+        tabor
+    )
 
 
 def test_rows_and_batch_agree():

@@ -37,7 +37,9 @@ def test_hysteresis_is_the_work_that_the_tissue_keeps():
     # p(q) = 2π a² p_max j1(qa)/(qa); u(q) = 2 p(q)/(E* q); mean of |q_x| over angles is 2q/π
     x = np.linspace(1e-6, 1000, 500_001)
     pressure = 2 * np.pi * a**2 * peak * spherical_jn(1, x) / x
-    power = np.trapezoid(pressure**2 * (2 / (2.7e4 * x / a)) * (2 / np.pi * x / a) * x / a, x / a) / (2 * np.pi)
+    power = np.trapezoid(pressure**2 * (2 / (2.7e4 * x / a)) * (2 / np.pi * x / a) * x / a, x / a) / (
+        2 * np.pi
+    )
     sine = np.sin(np.arctan(0.1))
     assert ball_hysteresis(a, 8e-3, loss_tangent=0.1) == pytest.approx(sine * power / 0.5, rel=1e-3)
     assert ball_hysteresis(a, 8e-3, loss_tangent=0.0) == 0
@@ -47,8 +49,12 @@ def test_hysteresis_is_the_work_that_the_tissue_keeps():
 def test_growth_of_contact_is_first_order():
     times = np.array([0.0, 1.0, 5.0, 30.0])
     solved = solve_ivp(lambda t, y: (1 - y) / 7.0, (0, 30), [0.3], t_eval=times, rtol=1e-10, atol=1e-12).y[0]
-    np.testing.assert_allclose(contact_after_dwell(times, 7.0, initial_contact_fraction=0.3), solved, rtol=1e-8)
-    impossible = contact_after_dwell([-1.0, 1.0, 1.0], [1.0, 0.0, 1.0], initial_contact_fraction=[0.1, 0.1, 1.1])
+    np.testing.assert_allclose(
+        contact_after_dwell(times, 7.0, initial_contact_fraction=0.3), solved, rtol=1e-8
+    )
+    impossible = contact_after_dwell(
+        [-1.0, 1.0, 1.0], [1.0, 0.0, 1.0], initial_contact_fraction=[0.1, 0.1, 1.1]
+    )
     assert np.isnan(impossible).all()
 
 
