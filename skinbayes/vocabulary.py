@@ -76,6 +76,8 @@ LABELS: dict[str, str] = {
     "session": "strokes that were measured in one go: one person, one site, one state",
     "body_site": "where on the body",
     "counterface": "what slid against the skin",
+    "elastomer": "which elastomer stood for skin",
+    "instrument": "what it was measured with",
     "source": "key of the source the row was read in",
     "row_label": "a name for the row",
 }

@@ -53,7 +53,8 @@ def jkr_contact(
     Notes
     -----
     For a `tabor_parameter` above 5, so for all soft solids of millimetres. w is what the contact as a whole gains per area: rough
-    surfaces hold a small part of what smooth ones do. Through stratum corneum it is that of the tissue, as for Hertz.
+    surfaces hold a small part of what smooth ones do. Through stratum corneum it is that of the tissue, as for Hertz. Not in the
+    paper, whose Sect. 5 has the pull of water bridges on a contact that keeps its size.
 
     References
     ----------
@@ -101,7 +102,8 @@ def dmt_contact(
 
     Notes
     -----
-    For a `tabor_parameter` below 0.1: hard solids and tips of nanometres. No ball on skin is of this kind.
+    For a `tabor_parameter` below 0.1: hard solids and tips of nanometres. No ball on skin is of this kind. Not in the paper,
+    whose Sect. 5 has another attraction from around the contact, that of water bridges.
 
     References
     ----------
@@ -123,9 +125,9 @@ def dmt_contact(
 
 def tabor_parameter(
     sphere_radius: ArrayLike,
-    work_of_adhesion: ArrayLike,
-    *,
     reduced_modulus: ArrayLike,
+    *,
+    work_of_adhesion: ArrayLike,
     range_of_attraction: ArrayLike = 0.3e-9,
 ) -> FloatArray:
     """How far a sphere stretches before it comes off, over the range of the attraction: ``μ_T = (R w²/(E*² z0³))^(1/3)``.
@@ -133,8 +135,8 @@ def tabor_parameter(
     Parameters
     ----------
     sphere_radius : R, m, > 0, any shape
-    work_of_adhesion : w, J/m^2, ≥ 0, broadcasts
     reduced_modulus : E*, Pa, > 0, broadcasts
+    work_of_adhesion : w, J/m^2, ≥ 0, broadcasts
     range_of_attraction : z0, m, > 0, broadcasts; a few tenths of a nanometre for molecules, the height of the gap for bridges of
         water
 
@@ -144,7 +146,8 @@ def tabor_parameter(
 
     Notes
     -----
-    Above 5 `jkr_contact` holds, below 0.1 `dmt_contact`; between them neither does. The ball on the skin of the paper has 1e5.
+    Above 5 `jkr_contact` holds, below 0.1 `dmt_contact`; between them neither does. The ball on the skin of Sect. 4 of the
+    paper has 1e5.
 
     References
     ----------
@@ -152,11 +155,11 @@ def tabor_parameter(
 
     Examples
     --------
-    >>> print(f"{tabor_parameter(8e-3, 0.085, reduced_modulus=20e3 / 0.75):.1e}")
+    >>> print(f"{tabor_parameter(8e-3, 20e3 / 0.75, work_of_adhesion=0.085):.1e}")
     1.4e+05
     """
-    radius, work, modulus, reach = floats(
-        sphere_radius, work_of_adhesion, reduced_modulus, range_of_attraction
+    radius, modulus, work, reach = floats(
+        sphere_radius, reduced_modulus, work_of_adhesion, range_of_attraction
     )
     with np.errstate(all="ignore"):
         found = np.cbrt(radius * np.square(work / modulus)) / reach

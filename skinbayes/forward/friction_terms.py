@@ -138,6 +138,6 @@ def adhesion_flags(inputs: Inputs) -> dict[str, BoolArray]:
     if "work_of_adhesion" not in inputs:
         return {}
     found = tabor_parameter(
-        inputs["sphere_radius"], inputs["work_of_adhesion"], reduced_modulus=modulus_under_ball_of(inputs)
+        inputs["sphere_radius"], modulus_under_ball_of(inputs), work_of_adhesion=inputs["work_of_adhesion"]
     )
     return {"not_jkr": np.asarray((found < FEWEST_TABOR) & (inputs["work_of_adhesion"] > 0))}

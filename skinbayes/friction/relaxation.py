@@ -26,6 +26,7 @@ def contact_after_dwell(
     -----
     First-order kinetics, as images of finger pads on glass show it: sweat softens the keratin of the contacts until the area
     saturates, for most within 20 s, whatever the load. Elastomers touch at once.
+    The paper has no dwell; the area that grows is that of its Sect. 4.
 
     References
     ----------
@@ -67,7 +68,7 @@ def occluded_modulus(
     Notes
     -----
     A description: that moisture under a glass makes finger pads rub harder within about 20 s is measured, the modulus on the way
-    is not. Its logarithm relaxes, since it goes over decades.
+    is not. Its logarithm relaxes, since it goes over decades: Fig. 17 of the paper.
 
     References
     ----------
@@ -102,7 +103,7 @@ def run_in_factor(cycle: ArrayLike, run_in_cycles: ArrayLike, *, run_in_ratio: A
     Notes
     -----
     A description of one relaxation; what runs in – a film that is rubbed off, a surface that is smoothed, skin that sweats – it
-    does not say.
+    does not say. In the place of the constant shear stress of Sect. 4 of the paper.
 
     References
     ----------

@@ -31,7 +31,8 @@ def shear_stress_under_pressure(
     -----
     p0/(A/A0) is the mean pressure in the real contact. The law is linear, so that its mean over the contact is that at the mean
     pressure, however the pressure is distributed. Friction is then ``μ = τ0 A/(A0 p0) + α``: the second part is the same at all
-    loads, whatever surface and moduli, and cannot be told from any other friction in proportion to the load.
+    loads, whatever surface and moduli, and cannot be told from any other friction in proportion to the load. Sect. 4 of the
+    paper has a constant shear stress.
 
     References
     ----------
@@ -72,7 +73,7 @@ def ball_hysteresis(
     -----
     For weak loss, the same at all frequencies near v/a, under the pressure of Hertz; the next order is less than 0.3 tan δ. With
     the contact of Hertz it grows as the load to the power 1/3, and it is the only part of dry friction that grows with it. Tissue
-    that loses 25 % of the work of an indentation has tan δ = 0.158.
+    that loses 25 % of the work of an indentation (Sect. 6.2 of the paper) has tan δ = 0.158.
 
     References
     ----------

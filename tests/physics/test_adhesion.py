@@ -82,9 +82,8 @@ def test_the_tabor_parameter_says_which_theory_holds(tabor, least, most):
     # the parameter of a made-up sphere, from its definition
     reach, radius, modulus = 0.5e-9, 1e-6, 1e9
     work = modulus * reach * np.sqrt(tabor**3 * reach / radius)
-    assert tabor_parameter(radius, work, reduced_modulus=modulus, range_of_attraction=reach) == pytest.approx(
-        tabor
-    )
+    found = tabor_parameter(radius, modulus, work_of_adhesion=work, range_of_attraction=reach)
+    assert found == pytest.approx(tabor)
 
 
 def test_rows_and_batch_agree():
