@@ -56,7 +56,40 @@ ALL = (
         lower_open=False,
         upper_open=True,
     ),
+    Quantity(
+        "loss_tangent",
+        "tan δ",
+        "1",
+        "tan δ of a homogeneous solid",
+        0.0,
+        1.0,
+        lower_open=False,
+        upper_open=True,
+    ),
     Quantity("reference_angular_frequency", "ω_r", "1/s", "at which moduli of constant tan δ are given"),
+    # beside a constant shear stress
+    _closed(
+        "shear_pressure_coefficient",
+        "α",
+        "1",
+        "rise of the shear stress with the pressure in the real contact",
+    ),
+    _closed("work_of_adhesion", "w", "J/m^2", "work that separates the nominal contact, for its area"),
+    # time on the skin
+    _closed("dwell_time", "t_d", "s", "time from touching to sliding"),
+    Quantity("contact_growth_time", "τ_c", "s", "time in which the real contact grows at rest"),
+    _closed("initial_contact_fraction", "f_0", "1", "real contact at once over that after a long dwell", 1.0),
+    Quantity(
+        "occlusion_time", "τ_o", "s", "time in which the layer softens under a counterface that seals it"
+    ),
+    Quantity(
+        "occluded_modulus_ratio", "r_o", "1", "modulus of the layer after long occlusion over that at once"
+    ),
+    Quantity(
+        "cycle", "n", "1", "number of the stroke on the same place, the first is 1", 1.0, lower_open=False
+    ),
+    Quantity("run_in_cycles", "N_r", "1", "strokes in which friction runs in"),
+    Quantity("run_in_ratio", "r_r", "1", "shear stress of the first stroke over that after many"),
     # roughness
     Quantity("rms_height", "h_rms", "m", "root-mean-square roughness"),
     Quantity(
@@ -193,6 +226,12 @@ ALL = (
     ),
     _closed(
         "friction_coefficient_hysteresis", "μ_h", "1", "part of the friction made by the loss of the tissue"
+    ),
+    _closed(
+        "friction_coefficient_pressure",
+        "μ_α",
+        "1",
+        "part of the friction made by shear stress that rises with the pressure",
     ),
     _closed("asperity_load_fraction", "φ_a", "1", "fraction of the load that asperities carry", 1.0),
     _closed("minimum_film_thickness", "u_min", "m", "smallest mean separation of lubricated surfaces"),

@@ -72,8 +72,12 @@ LABELS: dict[str, str] = {
     "person": "who was measured",
     "liquid": "the lubricant",
     "state": "state of the skin, such as dry or wet",
+    "treatment": "what was done to the skin, such as before and after",
+    "session": "strokes that were measured in one go: one person, one site, one state",
     "body_site": "where on the body",
     "counterface": "what slid against the skin",
+    "elastomer": "which elastomer stood for skin",
+    "instrument": "what it was measured with",
     "source": "key of the source the row was read in",
     "row_label": "a name for the row",
 }

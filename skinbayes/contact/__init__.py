@@ -1,5 +1,6 @@
 """Contact mechanics of skin and other solids: layered elasticity, Persson's contact area, yielding, gaps, and Hertz contacts."""
 
+from skinbayes.contact.adhesion import AdhesiveSphere, dmt_contact, jkr_contact, tabor_parameter
 from skinbayes.contact.area import persson_contact_area, relative_contact_area
 from skinbayes.contact.ball_on_skin import modulus_under_ball
 from skinbayes.contact.constant_loss import ConstantLossMaterial
@@ -59,6 +60,7 @@ from skinbayes.contact.viscoelastic_skin import ViscoelasticSkin
 
 __all__ = [
     "AREA_CORRECTION",
+    "AdhesiveSphere",
     "ConstantLossMaterial",
     "ContactArea",
     "Creep",
@@ -84,6 +86,7 @@ __all__ = [
     "cylinder_of_contact",
     "cylinder_of_ellipse",
     "cylinder_of_sphere",
+    "dmt_contact",
     "effective_modulus",
     "elastoplastic_contact_area",
     "ellipse_factors",
@@ -92,6 +95,7 @@ __all__ = [
     "indentation_creep",
     "indentation_cycle",
     "indentation_relaxation",
+    "jkr_contact",
     "layered_line_contact",
     "layered_modulus",
     "layered_sphere_contact",
@@ -108,6 +112,7 @@ __all__ = [
     "sphere_of_contact",
     "standard_linear_solid",
     "surface_response",
+    "tabor_parameter",
     "total_contact_area",
     "twice_stress_variance",
     "validate_solid",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from skinbayes.arrays import FloatArray
@@ -27,7 +28,7 @@ from skinbayes.files.scatter_block import (
 from skinbayes.files.stated_surface import StatedSurface, stated_about
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
-from skinbayes.vocabulary import QUANTITIES, Quantity, suggestions
+from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class ModelSpec:
     rheology: str | None = None
     rheology_by: str | None = None
     derived: dict[str, DerivedBlock] = field(default_factory=dict)
-    conditions: dict[str, FloatArray] = field(default_factory=dict)
+    conditions: dict[str, FloatArray | NDArray[np.str_]] = field(default_factory=dict)
     baseline_models: tuple[str, ...] = ()
 
     @property
@@ -282,7 +283,11 @@ def read_parameters(block: dict[str, Any], where: Callable[..., str]) -> tuple[P
     return tuple(specs)
 
 
-def _read_grid(name: str, grid: GridBlock, where: str) -> FloatArray:
+def _read_grid(name: str, grid: GridBlock, where: str) -> FloatArray | NDArray[np.str_]:
+    if name in LABELS:
+        if grid.values is None or not all(isinstance(item, str) for item in grid.values):
+            raise InputError(f"{where}: '{name}' is a label; expected values = [\"…\", …]")
+        return np.array(grid.values, dtype=np.str_)
     if name not in QUANTITIES:
         raise InputError(
             f"{where}: unknown condition '{shortened(name)}'.{suggestions(name, list(QUANTITIES))}"

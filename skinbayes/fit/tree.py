@@ -242,7 +242,9 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
             variable.attrs["units"] = own.unit
         block = problem.spec.derived.get(str(key))
         if block is not None:
-            factors = [(QUANTITIES[name].unit, power) for name, power in block.product.items()]
+            factors = [
+                (QUANTITIES[name.partition("[")[0]].unit, power) for name, power in block.product.items()
+            ]
             variable.attrs["units"] = product_unit(factors)
             variable.attrs |= {"long_name": block.meaning, "symbol": block.symbol or str(key)}
     return dataset

@@ -132,6 +132,12 @@ def profiles_against(
     )
 
 
+def partners(goes_with: Mapping[str, str | tuple[str, ...]], name: str) -> tuple[str, ...]:
+    """Inputs without which one has no meaning, of the ``goes_with`` of a model."""
+    found = goes_with.get(name, ())
+    return (found,) if isinstance(found, str) else found
+
+
 def nothing_derived(inputs: Inputs, tables: Tables) -> dict[str, FloatArray]:
     """No quantities between inputs and observables."""
     return {}
@@ -149,14 +155,15 @@ class ForwardModel:
     required : inputs that must be given, as a parameter or as a column of conditions; a tuple inside is a set of
         alternatives, each alternative a tuple of names, the first complete one is used
     optional : inputs with default values, SI
-    goes_with : optional or accepted input to the input without which it has no meaning: refused if that is not given, and no
-        default then
+    goes_with : optional or accepted input to the input, or a tuple of all inputs, without which it has no meaning: refused if
+        one is not given, and no default then
     why_needed : required input to the reason why it is, a clause that is said where it is missing
     exclusive : further sets of alternatives of which at most one may be given, such as wavevector or magnification
     derived_names : names of the ``derived`` quantities
     blocks : those of them that may stand for the parameters behind them when combinations are named (``rms_slope``)
     accepted : further inputs that may be given and have no default
     evaluate : ``(inputs, tables) -> {observable: (B, N)}``
+    parts : parts that add up to the first observable, same calling convention, or None; ``check`` says how each goes with load
     derived : quantities between inputs and observables (``rms_slope``, ``nominal_pressure``), same calling convention
     profiles : curves for plots
     abscissa : abscissa of the first profile for inputs that broadcast to ``(B, N)``, where it is none of the inputs but
@@ -198,7 +205,8 @@ class ForwardModel:
     evaluate: Callable[[Inputs, Tables], dict[str, FloatArray]]
     optional: Mapping[str, float] = field(default_factory=dict)
     derived: Callable[[Inputs, Tables], dict[str, FloatArray]] = nothing_derived
-    goes_with: Mapping[str, str] = field(default_factory=dict)
+    parts: Callable[[Inputs, Tables], dict[str, FloatArray]] | None = None
+    goes_with: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict)
     why_needed: Mapping[str, str] = field(default_factory=dict)
     exclusive: tuple[tuple[tuple[str, ...], ...], ...] = ()
     derived_names: tuple[str, ...] = ()
@@ -297,7 +305,7 @@ class ForwardModel:
         return {
             name: float(value)
             for name, value in self.optional.items()
-            if name not in given and self.goes_with.get(name, "") in ("", *given)
+            if name not in given and set(partners(self.goes_with, name)) <= set(given)
         }
 
     def input_names(self) -> tuple[str, ...]:

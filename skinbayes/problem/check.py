@@ -17,6 +17,7 @@ from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.files.scatter_block import SCATTER_PARAMETERS
 from skinbayes.phrases import row_count
 from skinbayes.problem.failures import explained
+from skinbayes.problem.load_powers import load_powers
 from skinbayes.problem.pieces import PIECE, named_in_pieces
 from skinbayes.problem.possible import has_value, predicted_everywhere
 from skinbayes.problem.posterior import Posterior
@@ -100,6 +101,8 @@ def check_problem(problem: StatisticalModel, seed: int = 1) -> CheckReport:
     if problem.observed is not None and problem.free:
         with explained(problem.spec.path, "what the data can tell cannot be computed"):
             identifiability = _identify(problem, draws[usable], positive)
+    with explained(problem.spec.path, "how the prediction goes with the load cannot be computed"):
+        predictions += load_powers(problem)
     return CheckReport(problem.name, setup(problem), prior_sentences(problem), predictions, identifiability)
 
 

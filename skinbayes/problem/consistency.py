@@ -8,6 +8,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import RESERVED_NAMES, ParameterSpec
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
+from skinbayes.forward.base import partners
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
 from skinbayes.roughness import PowerSpectrum
@@ -69,9 +70,12 @@ def check_required(
                     "."
                 )
             )
-    for name, other in forward.goes_with.items():
-        if name in given and other not in given:
-            raise InputError(f"{spec.path}: '{name}' has no effect without {other}; drop it, or give {other}")
+    for name in (name for name in forward.goes_with if name in given):
+        lacking = " and ".join(other for other in partners(forward.goes_with, name) if other not in given)
+        if lacking:
+            raise InputError(
+                f"{spec.path}: '{name}' has no effect without {lacking}; drop it, or give {lacking}"
+            )
     inert = [name for name in ROUGHNESS_INPUTS if name in given and name != "rms_height"]
     if table is not None and inert:
         raise InputError(
@@ -116,6 +120,7 @@ def check_derived(
     if not spec.derived:
         return
     known = {p.name for p in parameters} | set(conditions.values) | set(forward.derived_names) | set(further)
+    known |= {p.label for p in parameters if p.by_column}
     taken = {*QUANTITIES, *LABELS, *RESERVED_NAMES, *known}
     for name, block in spec.derived.items():
         if name in taken or not (name.isidentifier() and name.isascii()):

@@ -19,7 +19,7 @@ from skinbayes.files.toml_text import toml_text
 from skinbayes.files.written import written_parameter, written_value
 from skinbayes.problem.bound import BoundModel
 from skinbayes.problem.rheology import flow_curves_text
-from skinbayes.vocabulary import QUANTITIES
+from skinbayes.vocabulary import LABELS, QUANTITIES
 
 
 def model_files(problem: BoundModel, path: Path) -> dict[Path, str]:
@@ -121,7 +121,11 @@ def model_content(problem: BoundModel, path: Path, files: dict[Path, str], stem:
         name: block.model_dump(exclude_defaults=True) for name, block in spec.derived.items()
     }
     content["conditions"] = {
-        key: {"values": [written_value(v, QUANTITIES[key].unit, key) for v in values.tolist()]}
+        key: {
+            "values": values.tolist()
+            if key in LABELS
+            else [written_value(v, QUANTITIES[key].unit, key) for v in values.tolist()]
+        }
         for key, values in spec.conditions.items()
         if key not in named
     }

@@ -288,13 +288,19 @@ class PredictingModel(BoundModel):
                     predicted[name] = predicted[name] * inputs[key]
         return predicted
 
+    def _levels(self, theta: FloatArray) -> dict[str, FloatArray]:
+        """Values of parameters that differ by a column, ``name[level]`` to ``(B, 1)``, where a product names them."""
+        named = {factor for block in self.spec.derived.values() for factor in block.product if "[" in factor}
+        free = {p.label: theta[:, [place]] for place, p in enumerate(self.free) if p.label in named}
+        return free | {p.label: np.array([[p.value]]) for p in self.fixed if p.label in named}
+
     def _derived(self, theta: FloatArray) -> dict[str, FloatArray]:
         inputs = self.inputs(theta)
         with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
             quantities = dict(self.model.derived(inputs, self.tables))
             if self.surface_prior is not None:
                 quantities |= {name: inputs[name] for name in self.surface_prior.names}
-            known = inputs | quantities
+            known = inputs | quantities | self._levels(theta)
             for name, block in self.spec.derived.items():
                 product = np.ones((1, 1))
                 for factor, power in block.product.items():

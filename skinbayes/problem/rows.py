@@ -90,7 +90,14 @@ def default_rows(spec: ModelSpec, taken: set[str]) -> Conditions:
     lengths = {len(values) for values in grids.values()}
     if len(lengths) > 1:
         raise InputError(f"{spec.path}: conditions have different lengths: {sorted(lengths)}")
-    return Conditions(grids, {}, lengths.pop() if lengths else 1)
+    values = {
+        key: np.asarray(column, dtype=float) for key, column in grids.items() if column.dtype.kind == "f"
+    }
+    labels = {
+        key: np.asarray(column, dtype=np.str_) for key, column in grids.items() if column.dtype.kind == "U"
+    }
+    acting = {entry.column: values[entry.column] for entry in spec.covariates if entry.column in values}
+    return Conditions(values, labels, lengths.pop() if lengths else 1, acting)
 
 
 def data_rows(

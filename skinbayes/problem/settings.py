@@ -10,6 +10,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec, parse_value
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel
+from skinbayes.forward.base import partners
 from skinbayes.vocabulary import QUANTITIES, suggestions
 
 
@@ -108,5 +109,9 @@ def _resolve_alternatives(
             dropped |= others
         else:
             dropped |= {name for names in entry if names not in chosen and len(names) == 1 for name in names}
-    dropped |= {name for name, other in forward.goes_with.items() if other in dropped and name not in given}
+    dropped |= {
+        name
+        for name in forward.goes_with
+        if name not in given and dropped.intersection(partners(forward.goes_with, name))
+    }
     return [p for p in parameters if p.name not in dropped], dropped

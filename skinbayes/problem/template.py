@@ -14,6 +14,7 @@ from skinbayes.files.parameter_block import label_column
 from skinbayes.files.scatter_block import ORDER
 from skinbayes.files.table import read_table
 from skinbayes.forward import ROUGHNESS_INPUTS, ForwardModel, forward_model
+from skinbayes.forward.base import partners
 from skinbayes.problem.joint_bind import experiment_of
 from skinbayes.problem.rheology import REPLACED
 from skinbayes.units import split_header
@@ -170,10 +171,17 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
     if spec.rheology is not None:
         given.add(REPLACED)
     found = {
-        name: "it varies in the conditions of the model" for name in spec.conditions if name not in given
+        name: "it varies in the conditions of the model"
+        for name, values in spec.conditions.items()
+        if name not in given and values.dtype.kind == "f"
     }
     needed = "the forward model needs it and the model file does not give it"
     own = _own_columns(spec)
+    for name in (name for name in forward.goes_with if name in given):
+        without = (other for other in partners(forward.goes_with, name) if other not in given)
+        found |= dict.fromkeys(without, f"{name} has no effect without it")
+    for covariate in spec.covariates:
+        found.setdefault(covariate.column, f"covariate '{covariate.name}' of {covariate.acts_on}")
     for entry in (*forward.required, *ROUGHNESS_INPUTS):
         here = given | set(found)
         if isinstance(entry, str):
@@ -182,14 +190,12 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
             continue
         missing = [[name for name in names if name not in here] for names in entry]
         if not all(missing):  # one alternative is complete
+            notes += _instead(entry, missing, given)
             continue
         best = _best(entry, missing, own)
         found |= dict.fromkeys(missing[best], needed)
         others = "; or ".join(" and ".join(names) for i, names in enumerate(missing) if i != best)
         notes.append(f"Instead of {' and '.join(missing[best])}: {others}.")
-    for covariate in spec.covariates:
-        if covariate.column not in found:
-            found[covariate.column] = f"covariate '{covariate.name}' of {covariate.acts_on}"
     along = (
         {}
         if spec.discrepancy is None
@@ -198,6 +204,16 @@ def _inputs(spec: ModelSpec, forward: ForwardModel, notes: list[str]) -> dict[st
     along |= {} if spec.correlation is None else {spec.correlation.along: "the noise is correlated along it"}
     found |= {name: why for name, why in along.items() if name != ORDER and name not in found}
     return found
+
+
+def _instead(entry: tuple[tuple[str, ...], ...], missing: list[list[str]], given: set[str]) -> list[str]:
+    """A note on what may stand in place of columns that the conditions of the model made complete."""
+    chosen = [name for name in entry[missing.index([])] if name not in given]
+    others = [
+        [name for name in names if name not in given] for names in entry if not set(chosen) <= set(names)
+    ]
+    told = "; or ".join(" and ".join(names) for names in others if names)
+    return [f"Instead of {' and '.join(chosen)}: {told}."] if chosen and told else []
 
 
 def _best(entry: tuple[tuple[str, ...], ...], missing: list[list[str]], own: set[str]) -> int:

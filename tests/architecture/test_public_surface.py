@@ -39,13 +39,11 @@ def here(*packages: str) -> list[str]:
 
 def physics_callables() -> Iterator[tuple[str, Any]]:
     """Functions and classes that the physics packages export."""
-    for package in here("roughness", "topography", "contact", "wetting", "lubrication"):
+    for package in here("roughness", "topography", "contact", "friction", "wetting", "lubrication"):
         module = import_module(f"skinbayes.{package}")
         for name in module.__all__:
             if callable(found := getattr(module, name)):
                 yield f"{package}.{name}", found
-    friction = import_module("skinbayes.friction")
-    yield "friction.friction_coefficient", friction.friction_coefficient
 
 
 PHYSICS = dict(physics_callables())
@@ -93,6 +91,7 @@ def test_top_level_names() -> None:
         "roughness",
         "topography",
         "contact",
+        "friction",
         "wetting",
         "lubrication",
         "statistics",

@@ -33,6 +33,18 @@ def test_a_right_model_is_seldom_suspected():
     assert 3 <= found <= 27
 
 
+def test_effects_of_rows_that_stand_together_are_no_curve():
+    """Three strokes of each session, whose mean its effect takes: neighbours are less alike than new strokes would be."""
+    found = 0
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        strokes = rng.normal(size=(ROWS // 3, 3))
+        residuals = (strokes - strokes.mean(axis=1, keepdims=True)).ravel()
+        found += trends(residuals, simulated(rng), {"order": np.arange(ROWS)})[0].found
+    # 12 if a correlation below what is expected counted as one above it does
+    assert found <= 4
+
+
 def autocorrelated(rng):
     values = [rng.normal()]
     for _ in range(ROWS - 1):

@@ -12,15 +12,13 @@ import skinbayes.friction
 import skinbayes.roughness
 import skinbayes.wetting
 
-PACKAGES = (skinbayes.roughness, skinbayes.contact, skinbayes.wetting)
+PACKAGES = (skinbayes.roughness, skinbayes.contact, skinbayes.friction, skinbayes.wetting)
 MODULES = [
     f"{package.__name__}.{module.name}"
     for package in PACKAGES
     for module in pkgutil.iter_modules(package.__path__)
-] + ["skinbayes.friction"]
-PUBLIC = [(package.__name__, name) for package in PACKAGES for name in package.__all__] + [
-    ("skinbayes.friction", "friction_coefficient")
 ]
+PUBLIC = [(package.__name__, name) for package in PACKAGES for name in package.__all__]
 
 
 @pytest.mark.parametrize("name", MODULES)
