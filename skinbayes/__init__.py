@@ -18,8 +18,8 @@ from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
            "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "fit_spectrum", "load_dataset",
-           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "reduce_recordings", "register_engine", "register_forward_model",
-           "register_noise", "register_quantity", "sample"]  # fmt: skip
+           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "reduce_recordings", "register_engine",
+           "register_forward_model", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare

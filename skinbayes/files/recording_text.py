@@ -90,7 +90,7 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
         width = len(cells[0])
         header = [_cells(lines[i - 1], separator) if i else [] for i in (names_line, units_line)]
         names, written = (tuple((one + [""] * width)[:width]) for one in header)
-        units = [_name_and_unit(name)[1] for name in names]
+        units = [name_and_unit(name)[1] for name in names]
         return Layout(
             path, encoding, separator, _decimal(path, begin, cells, separator, stated), begin, width, names,
             tuple(_unit(w) or u for w, u in zip(written, units, strict=True)), names_line,
@@ -165,7 +165,7 @@ def _unit(cell: str) -> str:
     return cell.strip().strip("[]()").strip()
 
 
-def _name_and_unit(cell: str) -> tuple[str, str]:
+def name_and_unit(cell: str) -> tuple[str, str]:
     """A header taken apart; text behind a name is a unit only if it is one."""
     found = _WITH_UNIT.fullmatch(cell)
     unit = next((part for part in found.groupdict().values() if part and part != found["name"]), "") if found else ""
@@ -176,7 +176,7 @@ def column_number(layout: Layout, name: str) -> int | None:
     """Number of the column of a name, from 0: the whole header, or without its unit; None if there is none."""
     plain = " ".join(name.split())
     whole = [" ".join(header.split()) for header in layout.names]
-    bare = [" ".join(_name_and_unit(header)[0].split()) for header in layout.names]
+    bare = [" ".join(name_and_unit(header)[0].split()) for header in layout.names]
     for names in (whole, bare):
         if names.count(plain) == 1:
             return names.index(plain)
@@ -228,7 +228,7 @@ def read_numbers(
     options = {
         "sep": SEPARATORS[layout.separator], "header": None, "usecols": wanted, "decimal": layout.decimal,
         "na_values": list(MISSING), "skip_blank_lines": False, "skipinitialspace": True, "chunksize": PIECE, "engine": "c",
-        "names": list(range(layout.width + 1)), "dtype": {i: str for i in labels}, "index_col": False,
+        "dtype": {i: str for i in labels}, "index_col": False,
         "nrows": _rows(layout, footer_lines),
     }  # fmt: skip
     with _text(layout) as text:

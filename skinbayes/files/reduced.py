@@ -38,7 +38,22 @@ class ReducedRecordings:
 
     Examples
     --------
-    Examples of methods go on from that of :func:`skinbayes.reduce_recordings`.
+    Examples of methods go on from this one.
+
+    >>> import numpy as np, pandas as pd, skinbayes as sb
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> folder = Path(mkdtemp())
+    >>> t = np.arange(0, 8, 0.01)
+    >>> noise = np.random.default_rng(1).normal(scale=0.004, size=t.size)
+    >>> forward = t % 4 < 2
+    >>> frame = pd.DataFrame({"t": t, "x": 10 * np.abs(1 - t % 4 / 2), "Fx": np.where(forward, 0.2, -0.2) + noise, "Fz": 0.5})
+    >>> reduced = sb.reduce_recordings({"glass": frame}, {
+    ...     "title": "Glass on a forearm", "authors": ["A. Author"],
+    ...     "columns": {"time": {"name": "t", "unit": "s"}, "position": {"name": "x", "unit": "mm"},
+    ...                 "tangential_force": {"name": "Fx", "unit": "N"}, "normal_force": {"name": "Fz", "unit": "N"}}})
+    >>> reduced.sources
+    {'glass': ''}
     """
 
     recordings: tuple[ReducedRecording, ...]
