@@ -73,14 +73,14 @@ def useless(
     if steps.max() > LONGEST_GAP * recording.interval:
         where = recording.line(begin + int(steps.argmax()) + 1)
         return f"a gap of {steps.max():.3g} s in time (line {where})"
-    if recording.saturated is not None and recording.saturated[begin:end].any():
-        first = begin + int(recording.saturated[begin:end].argmax())
-        return f"a force at the end of its sensor's range (from line {recording.line(first)})"
     known = load[~missing]
     if not known.mean() > 0 or np.mean(known <= 0) > UNLOADED or known.mean() < LEAST_LOAD * typical_load:
         return f"a normal force near zero ({known.mean():.3g} N)"
     if known.mean() < minimum:
         return f"a normal force of {known.mean():.3g} N, less than the stated {minimum:.3g} N"
+    if recording.saturated is not None and recording.saturated[begin:end].any():
+        first = begin + int(recording.saturated[begin:end].argmax())
+        return f"a force at the end of its sensor's range (from line {recording.line(first)})"
     for name, (labels, code) in recording.changing.items():
         here = np.unique(code[begin:end])
         if here.size > 1:

@@ -30,10 +30,12 @@ def steady_part(
     begin, end = stroke.moving_start, stroke.moving_stop
     if rules.steady == "change points":
         return _longest_piece(friction, begin, end)
-    axis = (time if way is None or np.isnan(stroke.length) else way)[begin:end]
-    if axis.size < 2 or axis[-1] == axis[0]:
+    by_way = way is not None and not np.isnan(stroke.length)
+    axis = way if by_way and way is not None else time
+    first, last = (axis[stroke.start], axis[stroke.stop - 1]) if by_way else (axis[begin], axis[end - 1])
+    if last == first:
         return begin, end
-    share = (axis - axis[0]) / (axis[-1] - axis[0])
+    share = (axis[begin:end] - first) / (last - first)
     inside = np.flatnonzero((share >= 0.5 - 0.5 * rules.share) & (share <= 0.5 + 0.5 * rules.share))
     return (begin + int(inside[0]), begin + int(inside[-1]) + 1) if inside.size else (begin, begin)
 
