@@ -18,13 +18,14 @@ from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
            "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "fit_spectrum", "load_dataset",
-           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
-           "register_noise", "register_quantity", "sample"]  # fmt: skip
+           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "reduce_recordings", "register_engine",
+           "register_forward_model", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
+    from skinbayes.files.reduced import reduce_recordings
     from skinbayes.fit import Fit, JointFit, fit_spectrum, load_fit, load_joint_fit, sample
     from skinbayes.forward import ForwardModel, emulated, register_forward_model
     from skinbayes.problem import (
@@ -62,6 +63,7 @@ _HOME = {
     "register_forward_model": "skinbayes.forward",
     "register_engine": "skinbayes.sampling",
     "register_noise": "skinbayes.statistics",
+    "reduce_recordings": "skinbayes.files.reduced",
     "register_quantity": "skinbayes.vocabulary",
     "sample": "skinbayes.fit",
 }

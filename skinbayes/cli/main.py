@@ -23,6 +23,7 @@ from skinbayes.cli.new import new
 from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE, message
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
+from skinbayes.cli.reduce import reduce
 from skinbayes.cli.report import report
 from skinbayes.cli.reproduce import reproduce
 from skinbayes.cli.sensitivity import sensitivity
@@ -64,6 +65,7 @@ for _command in (
     new,
     template,
     digitised,
+    reduce,
     spectrum,
     check,
     prior,

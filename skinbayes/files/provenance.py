@@ -40,6 +40,9 @@ class Provenance(BaseModel):
     columns : meaning of columns that the vocabulary does not know (reference tables)
     grades : meaning of the grades of reliability (reference tables)
     sha256 : of the bytes of ``data.csv``
+    recipe : by which recordings were reduced, if they were
+    versions : of the programs that did so
+    recordings : name of each recording to the sha256 of its file
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
@@ -59,6 +62,9 @@ class Provenance(BaseModel):
     columns: dict[str, Text] = {}
     grades: dict[str, Text] = {}
     sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+    recipe: Text | None = None
+    versions: dict[str, Text] = {}
+    recordings: dict[str, Text] = {}
 
 
 def load_provenance(path: Path) -> Provenance:

@@ -203,6 +203,7 @@ def toml_text(content: Mapping[str, Any]) -> str:
     import tomlkit
 
     content = {key: value for key, value in content.items() if value not in ({}, []) or key == "parameters"}
-    if "\n" in content.get("description", ""):
-        content["description"] = tomlkit.string(f"\n{content['description']}\n", multiline=True)
+    for key in ("description", "recipe"):
+        if "\n" in content.get(key, ""):
+            content[key] = tomlkit.string(f"\n{content[key].rstrip()}\n", multiline=True)
     return tomlkit.dumps(content)
