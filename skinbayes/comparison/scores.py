@@ -11,7 +11,7 @@ from scipy.special import logsumexp, stdtrit
 
 from skinbayes.arrays import FloatArray
 from skinbayes.comparison.parts import Parts, blocks, levels, single_data
-from skinbayes.statistics.pareto import largest_shape, left_out_density
+from skinbayes.statistics.pareto import FINITE_VARIANCE, largest_shape, left_out_density
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit, JointFit
@@ -176,7 +176,9 @@ def score(
         wanted = []
         for place, parts in enumerate(everything):
             exact = few and parts is single
-            if not exact and not all(entry.reliable for entry in found[place]):
+            # terms of single data are many, and small beside the error of their sum
+            doubts = [not (entry.reliable if parts is single else _sure(entry)) for entry in found[place]]
+            if not exact and any(doubts):
                 found[place] = _by_own_weights(fit, parts, effective, found[place])
             wanted += [(place, i) for i, entry in enumerate(found[place]) if exact or not entry.reliable]
         for done, (place, i) in enumerate(wanted):
@@ -248,7 +250,14 @@ def _by_own_weights(
     after = _by_weights(
         parts.at(fit, theta[np.isfinite(log_weights)]), effective, log_weights[np.isfinite(log_weights)]
     )
-    return [new if new.reliable and not old.reliable else old for old, new in zip(before, after, strict=True)]
+    return [
+        old if _sure(old) else min(old, new, key=lambda entry: (not entry.reliable, entry.error))
+        for old, new in zip(before, after, strict=True)
+    ]
+
+
+def _sure(entry: LeftOutLevel) -> bool:
+    return entry.reliable and entry.pareto_k <= FINITE_VARIANCE
 
 
 def _refitted(

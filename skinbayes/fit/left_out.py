@@ -15,6 +15,7 @@ from skinbayes.fit.result import JointResult
 from skinbayes.problem.joint import JointProblem
 from skinbayes.problem.subsets import without_data
 from skinbayes.sampling.draws import weighted_quantiles
+from skinbayes.statistics.pareto import FINITE_VARIANCE
 from skinbayes.statistics.reweighting import reweighted
 
 LEVELS = (0.05, 0.5, 0.95)
@@ -89,11 +90,11 @@ def left_out_experiments(fit: JointResult, refit: bool = False) -> list[LeftOutE
     names = [str(name) for name in fit.groups["log_likelihood_left_out"][f"{EXPERIMENT}_level"].values]
     equal = _equal_draws(fit, labels)
     found = [_left_out(name, i, equal, equal) for i, name in enumerate(names)]
-    if not all(one.reliable for one in found) and (reaching := _weighted_draws(fit, labels)) is not None:
-        again = [_left_out(name, i, reaching, equal) for i, name in enumerate(names)]
-        found = [
-            new if new.reliable and not old.reliable else old for old, new in zip(found, again, strict=True)
-        ]
+    sure = [one.reliable and one.pareto_k <= FINITE_VARIANCE for one in found]
+    if not all(sure) and (reaching := _weighted_draws(fit, labels)) is not None:
+        for i in np.flatnonzero(~np.array(sure)):
+            new = _left_out(names[i], int(i), reaching, equal)
+            found[i] = min(found[i], new, key=lambda one: (not one.reliable, one.error))
     if not refit or fit.problem is None:
         return found
     return [one if one.reliable else _refitted(fit, fit.problem, one) for one in found]

@@ -141,7 +141,7 @@ def weighed(sides: tuple[Rounds, Rounds]) -> ImportanceDraws:
             *((side.positions, side.log_density, side.log_proposal) for side in sides), strict=True
         )
     )
-    log_weights, shape = smoothed(log_density - log_proposal)
+    log_weights, shape, _ = smoothed(log_density - log_proposal)
     weights = np.exp(log_weights - log_weights.max())
     mean = weights @ positions / weights.sum()
     ends = np.array([weighted_quantiles(column, weights, TAILS[[0, 2]]) for column in positions.T])

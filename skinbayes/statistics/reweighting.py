@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.statistics.annealing import effective_number
-from skinbayes.statistics.pareto import largest_shape, smoothed
+from skinbayes.statistics.pareto import TAIL_DOUBT, largest_shape, smoothed
 
 SMOOTHED_FROM = 1 / 3
 """Pareto k from which weights are smoothed; below it their moments of order three exist, and their plain mean is as good."""
@@ -24,7 +24,7 @@ class Reweighted:
     ----------
     log_weights : ln of the weights up to a constant, shape ``(N,)``
     log_ratio, error : ln of the mean ratio of the two densities over the first distribution, and its standard error; for
-        unnormalised densities that is ln of the ratio of their integrals
+        unnormalised densities that is ln of the ratio of their integrals; the error counts weights that no draw has shown
     shape : Pareto k of the weights
     reliable : whether k is at most that for so many independent draws
     """
@@ -59,11 +59,11 @@ def reweighted(log_weights: FloatArray, log_ratios: FloatArray, correlation: flo
     total = log_weights + log_ratios
     if not np.isfinite(total.max()):
         return Reweighted(total, -inf, inf, inf, False)
-    after, shape = smoothed(total)
+    after, shape, beyond = smoothed(total)
     after = after if shape >= SMOOTHED_FROM else total
     value = float(logsumexp(after) - logsumexp(log_weights))
     share = np.exp(after - logsumexp(after)) - before / before.sum()
-    error = float(np.sqrt(correlation * np.square(share).sum()))
+    error = float(np.hypot(np.sqrt(correlation * np.square(share).sum()), TAIL_DOUBT * beyond))
     return Reweighted(after, value, error, shape, shape <= largest_shape(effective))
 
 
