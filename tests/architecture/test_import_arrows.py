@@ -39,7 +39,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "lubrication": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
-    "sampling": {"errors", "arrays", "defaults", *FILES, "statistics"},
+    "sampling": {"errors", "arrays", "defaults", *FILES, "statistics", "version"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
     "files": {*WORDS, "sealed", "plugins", "units", "roughness", "topography", "statistics"},
