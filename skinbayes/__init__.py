@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
-           "__version__", "build_joint_problem", "build_problem", "calibrate", "compare", "emulated", "fit_spectrum", "load_dataset",
-           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
-           "register_noise", "register_quantity", "sample"]  # fmt: skip
+           "__version__", "build_joint_problem", "build_problem", "calibrate", "compare", "emulated", "fit_spectrum",
+           "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "register_engine",
+           "register_forward_model", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.calibration import calibrate

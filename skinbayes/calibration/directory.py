@@ -107,8 +107,8 @@ class CalibrationDirectory:
             return False
         if MANIFEST not in names:
             raise InputError(
-                f"{self.path}: holds {', '.join(sorted(names)[:4])}, and is no calibration; expected a new or empty folder, or that "
-                "of this calibration. Nothing was written"
+                f"{self.path}: holds {', '.join(sorted(names)[:4])}, and is no calibration; expected a new or empty folder, "
+                "or that of this calibration. Nothing was written"
             )
         try:
             held = read_note(self.path / MANIFEST)

@@ -178,7 +178,7 @@ class ModelOdds:
         """
         odds, second = self._odds(False)
         if len(odds) < 2:
-            return f"Of {len(self.simulations)} simulations {len(odds)} have the evidence of both models; too few to say anything."
+            return f"Of {len(self.simulations)} simulations {len(odds)} have the evidence of both models; too few to say more."
         right, expected = int(((odds > 0) == second).sum()), float(expit(np.abs(odds)).sum())
         p = self.p_values()
         name = min(p, key=lambda key: p[key])
@@ -194,9 +194,10 @@ class ModelOdds:
             else " All fits converged."
         )
         return (
-            f"{start}: in {len(odds)} simulations the data were {right} times those of the model preferred, where the probabilities "
-            f"add up to {number(expected)}; mean probability of {self.models[1]} {number(float(expit(odds).mean()))}, where 0.5 is "
-            f"right; smallest of {len(p)} p values {number(p[name], 2)} ({name}).{failed}"
+            f"{start}: in {len(odds)} simulations the data were {right} times those of the model preferred, "
+            f"where the probabilities add up to {number(expected)}; mean probability of {self.models[1]} "
+            f"{number(float(expit(odds).mean()))}, where 0.5 is right; "
+            f"smallest of {len(p)} p values {number(p[name], 2)} ({name}).{failed}"
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -236,8 +237,8 @@ class ModelOdds:
             for one in self.simulations
             if (odds := _log_odds(one)) is not None and (one.converged or not converged_only)
         ]
-        odds, second = np.array(known, dtype=float).reshape(-1, 2).T
-        return odds, second.astype(bool)
+        ratio, second = np.array(known, dtype=float).reshape(-1, 2).T
+        return ratio, second.astype(bool)
 
 
 def _log_odds(one: Simulated) -> float | None:

@@ -336,7 +336,9 @@ class RankedTruths:
         parts = []
         if unfinished:
             same = "the same" if self.passed(True) == self.passed() else "another"
-            parts.append(f"{unfinished} did not converge and are counted in (without them the verdict is {same})")
+            parts.append(
+                f"{unfinished} did not converge and are counted in (without them the verdict is {same})"
+            )
         if broken:
             parts.append(f"{broken} ended in an error and have no rank")
         return f"Of the fits {' and '.join(parts)}."
@@ -354,10 +356,10 @@ class RankedTruths:
         >>> result.to_dict()["failed"]
         0
         """
-        table = self.summary()
+        table = self.summary().to_dict(orient="index")
 
         def entry(name: str) -> dict[str, Any]:
-            values = {str(key): float(value) for key, value in table.loc[name].items() if value == value}
+            values = {str(key): float(value) for key, value in table[name].items() if value == value}
             return {"ranks": self.ranks(name).astype(int).tolist(), **values}
 
         scores = self.evidence_scores()

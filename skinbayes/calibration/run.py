@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from skinbayes.calibration.directory import CalibrationDirectory
 from skinbayes.calibration.result import Calibration, OddsCalibration
@@ -18,6 +18,18 @@ from skinbayes.sampling.options import whole
 
 if TYPE_CHECKING:
     from skinbayes.problem import JointProblem, Problem
+
+
+@overload
+def calibrate(
+    problem: Problem | JointProblem, other: None = None, *positional: Any, **options: Any
+) -> Calibration: ...
+
+
+@overload
+def calibrate(
+    problem: Problem | JointProblem, other: Problem | JointProblem, *positional: Any, **options: Any
+) -> OddsCalibration: ...
 
 
 def calibrate(
@@ -42,8 +54,8 @@ def calibrate(
     error, is counted and shown.
 
     The rank is that among 199 draws of the result, evenly spaced among those that are nearly independent; among draws that
-    equal the truth any place is as likely. The likelihood of all data is ranked too (Modrák et al. 2023): it sees what no parameter alone
-    shows, such as data that were left out.
+    equal the truth any place is as likely. The likelihood of all data is ranked too (Modrák et al. 2023): it sees what no
+    parameter alone shows, such as data that were left out.
 
     Parameters
     ----------
@@ -113,15 +125,17 @@ def calibrate(
         "ranked_draws": RANKED_DRAWS,
     }  # fmt: skip
     with ExitStack() as stack:
-        kept = None if directory is None else stack.enter_context(CalibrationDirectory(Path(directory), asked))
+        kept = (
+            None if directory is None else stack.enter_context(CalibrationDirectory(Path(directory), asked))
+        )
         found: dict[int, Simulated] = {} if kept is None else kept.done
         missing = [number for number in range(simulations) if number not in found]
         done = simulations - len(missing)
-        for _, one in done_tasks(simulation, missing, cores, scheduler):
+        for _, simulated in done_tasks(simulation, missing, cores, scheduler):
             if kept is None:
-                found[one.number] = one
+                found[simulated.number] = simulated
             else:
-                kept.add(one)
+                kept.add(simulated)
             done += 1
             if progress is not None:
                 progress(done, simulations)

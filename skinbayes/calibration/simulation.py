@@ -97,7 +97,10 @@ class Simulated:
         """The inverse of :meth:`to_dict`."""
         fits = [
             FitOutcome(
-                bool(one["converged"]), str(one["failure"]), _pair(one["log_evidence"]), _pair(one["reference"])
+                bool(one["converged"]),
+                str(one["failure"]),
+                _pair(one["log_evidence"]),
+                _pair(one["reference"]),
             )
             for one in entry["fits"]
         ]
@@ -137,12 +140,18 @@ class Simulation:
             if place == model and fit is not None:
                 found = _where(fit, simulated, truth, np.random.default_rng([self.seed, number, 2]))
         return Simulated(
-            number, model, truth.tolist(), fits, **(found or {}), again=again, seconds=process_time() - started
+            number,
+            model,
+            truth.tolist(),
+            fits,
+            **(found or {}),
+            again=again,
+            seconds=process_time() - started,
         )
 
     def _truth(self, rng: np.random.Generator) -> tuple[int, FloatArray, int]:
         for again in range(TRIALS):
-            # model and parameters anew each time: a model whose prior holds more that cannot be is less likely, as its evidence is
+            # the model anew too: one whose prior holds more that cannot be is as much less likely as its evidence is smaller
             model = int(rng.integers(len(self.problems)))
             truth = draw_possible(self.problems[model], rng)
             if truth is not None:
@@ -187,8 +196,7 @@ def _where(
     mean, variance = line.mean(axis=0), line.var(axis=0)
     return {
         "ranks": [
-            random_rank(value, quantities[:, place], rng)
-            for place, value in enumerate([*truth, density[-1]])
+            random_rank(value, quantities[:, place], rng) for place, value in enumerate([*truth, density[-1]])
         ],
         "inside": [((end[:, 0] <= truth) & (truth <= end[:, 1])).tolist() for end in ends],
         "z_scores": ((mean - there) / np.sqrt(variance)).tolist(),

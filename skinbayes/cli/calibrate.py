@@ -41,12 +41,17 @@ if TYPE_CHECKING:
 @number_option("--ess", EFFECTIVE_SAMPLE_SIZE, 10, "Effective sample size wanted of each fit.")
 @number_option("--cores", 1, 1, "Processes that share the simulations; they do not change the numbers.")
 @click.option(
-    "--scheduler", metavar="ADDRESS", help="Let the workers of a dask scheduler do it, such as tcp://node1:8786."
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Let the workers of a dask scheduler do it, such as tcp://node1:8786.",
 )
 @click.option("--engine", default="emcee", show_default=True, metavar="NAME", help="What samples, as of fit.")
 @set_option
 @click.option(
-    "-o", "--output", metavar="DIR", help="Where simulations are kept.  [default: runs/MODEL-calibration-seedN]"
+    "-o",
+    "--output",
+    metavar="DIR",
+    help="Where simulations are kept.  [default: runs/MODEL-calibration-seedN]",
 )
 @click.option("--report", metavar="FILE.html", help="Also write a page about it.")
 @json_option
@@ -67,8 +72,9 @@ def calibrate(
 ) -> int:
     """Simulate data from the model itself, fit them, and count.
 
-    Parameters are drawn from the prior, data are simulated with them at the conditions of the model's own data, and fitted as any
-    data are. Of a calibrated model the truth is a draw of the posterior like any other, and intervals hold it as often as they say.
+    Parameters are drawn from the prior, data are simulated with them at the conditions of the model's own data, and fitted as
+    any data are. Of a calibrated model the truth is a draw of the posterior like any other, and intervals hold it as often as
+    they say.
 
     With OTHER, another model of the same data, data are drawn from both, and it is asked whether each is right as often as its
     probability says.
@@ -83,16 +89,17 @@ def calibrate(
     page = None if report is None else Path(report)
     if page is not None:
         refuse_other_files(page)
-    problems = [
-        load_any_problem(name, data_of(name, given), settings=settings_of(pairs))
-        for name in (model, *([] if other is None else [other]))
-    ]
-    names = "-".join(problem.name for problem in problems)
+    first, second = (
+        None if name is None else load_any_problem(name, data_of(name, given), settings=settings_of(pairs))
+        for name in (model, other)
+    )
+    assert first is not None
+    names = first.name if second is None else f"{first.name}-{second.name}"
     directory = Path(output) if output else RUNS / f"{names}-calibration-seed{seed}"
     try:
         with counted_progress("tables") as preparing, counted_progress("simulations") as progress:
             result = run(
-                *problems, simulations=simulations, seed=seed, ess=ess, cores=cores, scheduler=scheduler, directory=directory,
+                first, second, simulations=simulations, seed=seed, ess=ess, cores=cores, scheduler=scheduler, directory=directory,
                 progress=progress, preparing=preparing, engine=engine,
             )  # fmt: skip
     except KeyboardInterrupt:
@@ -127,6 +134,11 @@ def _print(result: Calibration | OddsCalibration) -> None:
         print_table(HEADERS, table_rows(result), right=range(1, len(HEADERS)))
         print_sentences([result.sentence(), *remarks(result)])
         return
-    print_table(ODDS_HEADERS, odds_rows(result), title=f"probability of {result.models[1]}", right=range(len(ODDS_HEADERS)))
+    print_table(
+        ODDS_HEADERS,
+        odds_rows(result),
+        title=f"probability of {result.models[1]}",
+        right=range(len(ODDS_HEADERS)),
+    )
     print_sentences([result.sentence()])
     print_text(ODDS_EXPLAINED)

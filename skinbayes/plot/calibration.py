@@ -94,7 +94,14 @@ def plot_ecdf(calibration: RankedTruths, width: str | None = None) -> Figure:
         out = bool(((found < low - 1e-9) | (found > high + 1e-9)).any())
         ax.step(band.places, found, where="mid", color=VERMILLION if out else BLUE)
         if 0 < len(sure) < len(levels):
-            ax.step(band.places, uniform_band(len(sure)).difference(sure), where="mid", color=GREY, ls="--", lw=1.0)
+            ax.step(
+                band.places,
+                uniform_band(len(sure)).difference(sure),
+                where="mid",
+                color=GREY,
+                ls="--",
+                lw=1.0,
+            )
         ax.set_xlim(0, 1)
         ax.set_xticks([0, 0.5, 1], ["0", "0.5", "1"])
         ax.locator_params(axis="y", nbins=4)
@@ -132,7 +139,13 @@ def plot_coverage(calibration: RankedTruths, width: str | None = None) -> Figure
             ends = np.array([_interval(hits, count) for hits, count in counts])
             ax.axvline(level, color=GREY, linewidth=0.8)
             ax.errorbar(
-                share, places, xerr=np.abs(ends.T - share), fmt="o", color=BLUE, markersize=4.5, elinewidth=1.2
+                share,
+                places,
+                xerr=np.abs(ends.T - share),
+                fmt="o",
+                color=BLUE,
+                markersize=4.5,
+                elinewidth=1.2,
             )
             ax.set_title(f"{level:.0%} intervals".replace("%", " %"), pad=4.0)
             ax.set_ylim(len(names) - 0.5, -0.5)
@@ -162,7 +175,14 @@ def plot_recovery(calibration: RankedTruths, width: str | None = None) -> Figure
     def draw(ax: Axes, name: str) -> None:
         scores, contraction = calibration.recovery(name)
         ax.axhline(0.0, color=GREY, linewidth=0.8)
-        ax.plot(np.clip(contraction, -0.5, 1.0), np.clip(scores, -5, 5), "o", color=BLUE, markersize=2.0, alpha=0.5)
+        ax.plot(
+            np.clip(contraction, -0.5, 1.0),
+            np.clip(scores, -5, 5),
+            "o",
+            color=BLUE,
+            markersize=2.0,
+            alpha=0.5,
+        )
         ax.set_xlim(-0.55, 1.05)
         ax.set_ylim(-5.2, 5.2)
         ax.set_xticks([-0.5, 0, 0.5, 1], ["−0.5", "0", "0.5", "1"])
@@ -231,7 +251,9 @@ def _panels(
         axes = figure.subplots(rows, columns, squeeze=False).reshape(-1)
         for ax, name in zip(axes, names, strict=False):
             draw(ax, name)
-            ax.set_title(shortened(spoken_name(name), letters), pad=4.0, fontsize=9.0 if size >= SMALL else 7.5)
+            ax.set_title(
+                shortened(spoken_name(name), letters), pad=4.0, fontsize=9.0 if size >= SMALL else 7.5
+            )
         for ax in axes[len(names) :]:
             ax.set_axis_off()
         _below(figure, label, size)
@@ -240,9 +262,7 @@ def _panels(
 
 
 def _below(figure: Figure, label: str, size: float) -> None:
-    figure.supxlabel(
-        label, y=0.12 / figure.get_size_inches()[1], fontsize=10.0 if size >= SMALL else 8.0
-    )
+    figure.supxlabel(label, y=0.12 / figure.get_size_inches()[1], fontsize=10.0 if size >= SMALL else 8.0)
 
 
 def _expected_counts(count: int, share: float) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from skinbayes.problem.possible import has_value
 if TYPE_CHECKING:
     from skinbayes.problem.problem import Problem
 
+
 @overload
 def with_data(problem: Problem, data: FloatArray) -> Problem: ...
 

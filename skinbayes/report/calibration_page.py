@@ -20,9 +20,9 @@ RANKS = (
         "ecdf", plot_ecdf, "Distribution of the ranks less the uniform one",
         "A panel for each parameter and one for the likelihood of all data: a curve about zero, with a shaded band.",
         "If the pipeline is calibrated, the whole curve keeps to the shaded band with probability 95 % (Säilynoja, Bürkner and "
-        "Vehtari 2022, 10.1007/s11222-022-10090-6). A curve that rises and then falls: the posterior is too wide; one that falls and then "
-        "rises, or ∽: too narrow; all above: true values are lower than the posterior says; all below: higher. A dashed curve leaves out "
-        "fits that did not converge.",
+        "Vehtari 2022, 10.1007/s11222-022-10090-6). Above zero in the left half and below in the right: the posterior is too "
+        "narrow; the other way round: too wide; all above: true values are lower than the posterior says; all below: higher. A "
+        "dashed curve leaves out fits that did not converge.",
     ),
     Drawing(
         "ranks", plot_ranks, "Ranks of the truth",
@@ -39,8 +39,8 @@ RANKS = (
     Drawing(
         "recovery", plot_recovery, "What was learnt, and how far off it was",
         "A panel for each parameter with a dot for each simulation.",
-        "Upwards the posterior mean less the truth over the posterior standard deviation: mostly within ±2, and about zero. To the "
-        "right how much of the prior variance the data removed: near 0 they say nothing about the parameter, near 1 everything. "
+        "Upwards the posterior mean less the truth over the posterior standard deviation: mostly within ±2, and about zero. "
+        "To the right how much of the prior variance the data removed: near 0 they say nothing about the parameter, near 1 all. "
         "Parameters on the scale where they have no bounds.",
     ),
 )  # fmt: skip
@@ -49,9 +49,9 @@ ODDS = (
     Drawing(
         "odds", plot_odds, "Probability against frequency",
         "Dots with bars beside a diagonal line.",
-        "Data were drawn from both models, as often from one as from the other. Each dot holds the simulations with about the same "
-        "probability of the second model, and how often that had made the data; on the line it is right as often as it says. Bars are "
-        "binomial 95 % intervals; numbers are those of simulations.",
+        "Data were drawn from both models, as often from one as from the other. Each dot holds the simulations with about the "
+        "same probability of the second model, and how often that had made the data; on the line it is right as often as it "
+        "says. Bars are binomial 95 % intervals; numbers are those of simulations.",
     ),
 )  # fmt: skip
 
@@ -112,17 +112,27 @@ def _odds(calibration: OddsCalibration) -> dict[str, Any]:
     }
 
 
-HEADERS = ("quantity", "p", "p, converged only", "50 % interval", "90 % interval", "mean z", "sd of z", "contraction")
+HEADERS = (
+    "quantity",
+    "p",
+    "p, converged only",
+    "50 % interval",
+    "90 % interval",
+    "mean z",
+    "sd of z",
+    "contraction",
+)
 ODDS_HEADERS = ("mean probability", "frequency", "right", "of", "p")
 
 EXPLAINED = (
-    "p is the probability that the ranks of a calibrated pipeline stray as far somewhere; the verdict takes the smallest of them times "
-    "their number, so that one calibrated model in twenty is doubted. Columns of intervals are the shares of simulations whose interval "
-    "holds the truth."
+    "p is the probability that the ranks of a calibrated pipeline stray as far somewhere; the verdict takes the smallest of them "
+    "times their number, so that one calibrated model in twenty is doubted. Columns of intervals are the shares of simulations "
+    "whose interval holds the truth."
 )
 ODDS_EXPLAINED = (
-    "Three tests. count: the model preferred made the data as often as its probabilities add up to. size: odds are neither too bold nor too "
-    "shy. average: over data of both models the mean probability is that before the data, one half (10.1037/met0000472)."
+    "Three tests. count: the model preferred made the data as often as its probabilities add up to. size: odds are neither too "
+    "bold nor too shy. average: over data of both models the mean probability is that before the data, one half "
+    "(10.1037/met0000472)."
 )
 
 
@@ -136,7 +146,12 @@ def table_rows(calibration: Calibration) -> list[list[str]]:
     for name, values in table.iterrows():
         p, sure, half, most, *others = (float(value) for value in values)
         rows.append(
-            [str(name), *(_p(x) for x in (p, sure)), *(_share(x) for x in (half, most)), *(_plain(x) for x in others)]
+            [
+                str(name),
+                *(_p(x) for x in (p, sure)),
+                *(_share(x) for x in (half, most)),
+                *(_plain(x) for x in others),
+            ]
         )
     return rows
 
@@ -155,17 +170,17 @@ def remarks(calibration: Calibration) -> list[str]:
     scores = calibration.evidence_scores()
     if len(scores):
         said.append(
-            f"ln Z: of {len(scores)} simulations it was compared with the mean likelihood of 20,000 draws of the prior; the difference over "
-            f"both standard errors has mean {_plain(float(scores.mean()))} and standard deviation {_plain(float(scores.std()))}, 0 and 1 being "
-            f"right (p {_p(calibration.evidence_p_value())})."
+            f"ln Z: of {len(scores)} simulations it was compared with the mean likelihood of 20,000 draws of the prior; the "
+            f"difference over both standard errors has mean {_plain(float(scores.mean()))} and standard deviation "
+            f"{_plain(float(scores.std()))}, 0 and 1 being right (p {_p(calibration.evidence_p_value())})."
         )
     said += [f"{count} fits ended in: {error}" for error, count in calibration.errors.items()]
     again = sum(one.again for one in calibration.simulations)
     if again:
         share = again / (again + len(calibration.simulations))
         said.append(
-            f"For {100 * share:.0f} % of the draws of the prior the forward model cannot predict the data; the posterior gives them no weight, and "
-            "no data were made with them."
+            f"For {100 * share:.0f} % of the draws of the prior the forward model cannot predict the data; the posterior gives "
+            "them no weight, and no data were made with them."
         )
     return said
 

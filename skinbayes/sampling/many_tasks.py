@@ -65,9 +65,7 @@ def _done_by_scheduler(
     with _connected(distributed, address) as client:
         # to every worker once: with tables it may be megabytes
         shared = client.scatter(work, broadcast=True, hash=False)
-        futures = {
-            client.submit(_do, shared, task, pure=False): index for index, task in enumerate(tasks)
-        }
+        futures = {client.submit(_do, shared, task, pure=False): index for index, task in enumerate(tasks)}
         try:
             for future in distributed.as_completed(list(futures)):
                 try:
@@ -96,7 +94,9 @@ def _connected(distributed: Any, address: str) -> Any:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError:
-            raise InputError(f"scheduler {address}: has no workers; start some with: dask worker {address}") from None
+            raise InputError(
+                f"scheduler {address}: has no workers; start some with: dask worker {address}"
+            ) from None
         try:
             versions = set(client.run(_version).values())
         except Exception as error:  # whatever a worker without skinbayes says

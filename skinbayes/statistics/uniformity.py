@@ -87,7 +87,9 @@ class UniformBand:
         low, high = 0, len(levels) - 1  # outside() rises with the level
         while high - low > 1:
             middle = (low + high) // 2
-            low, high = (middle, high) if self._outside(levels[middle]) <= 1.0 - probability else (low, middle)
+            low, high = (
+                (middle, high) if self._outside(levels[middle]) <= 1.0 - probability else (low, middle)
+            )
         allowed = self._depth > levels[low]
         first = allowed.argmax(axis=1)
         last = self.count - allowed[:, ::-1].argmax(axis=1)

@@ -103,7 +103,17 @@ HOMES: dict[str, set[str]] = {
     "pydantic": {"files", "fit"},
     "rich": {"cli"},
     "tomlkit": {"files"},
-    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "calibration", "plot", "reproduce"},
+    "scipy": {
+        *PHYSICS,
+        *STATISTICS,
+        "files",
+        "problem",
+        "fit",
+        "comparison",
+        "calibration",
+        "plot",
+        "reproduce",
+    },
     "xarray": {"fit", "plot", "report"},
 }
 """Library to the floors that may import it; a library that is not here is not a dependency."""

@@ -1,4 +1,4 @@
-"""Calibration finds what is wrong, passes what is right, counts what fails, and gives the same numbers in every way it can be run.
+"""Calibration finds what is wrong, passes what is right, counts what fails, and gives the same numbers however it is run.
 
 Right pipelines are doubted with probability 0.05 each; seeds are those of the first try.
 """
@@ -112,7 +112,7 @@ def test_it_goes_on_where_it_was_and_shows_damage(right: Calibration, tmp_path: 
         sb.calibrate(constant(0.5), simulations=1, seed=3, engine=FromPrior(), directory=run)
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("years of work")
-    with pytest.raises(InputError, match="holds thesis.txt"):
+    with pytest.raises(InputError, match=r"holds thesis\.txt"):
         sb.calibrate(constant(), simulations=1, engine=FromPrior(), directory=tmp_path / "mine")
 
 

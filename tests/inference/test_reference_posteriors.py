@@ -1,0 +1,74 @@
+"""Fresh fits agree with the reference posteriors within Monte Carlo error."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from reference_posteriors import EACH, FILE, SEEDS, effective, reference_posteriors
+
+import skinbayes as sb
+from skinbayes.files.locate import shipped_names
+
+REFERENCES = reference_posteriors()
+QUICK = ("forearm-glass", "finger-water")
+
+STANDARD_ERRORS = 4.5
+"""Of a comparison; that one of 200 is beyond them by chance has probability 0.0014."""
+
+
+def test_they_meet_the_quality_that_they_state() -> None:
+    assert set(QUICK) <= set(REFERENCES) <= set(shipped_names("models"))
+    assert FILE.stat().st_size < 200_000
+    for name, entry in REFERENCES.items():
+        assert len(entry["seeds"]) == len(SEEDS)
+        for label, found in entry["parameters"].items():
+            assert found["effective_draws"] >= len(SEEDS) * EACH, f"{name}: {label}"
+            assert found["r_hat"] <= 1.01, f"{name}: {label}"
+
+
+def disagreements(name: str, seed: int, ess: float) -> list[str]:
+    """What of a fresh fit is further from the reference than Monte Carlo errors allow."""
+    entry, problem = REFERENCES[name], sb.load_problem(name)
+    # a change of model, prior or data asks for new references
+    assert problem.data_fingerprint == entry["data_fingerprint"]
+    assert problem.fingerprint == entry["fingerprint"], (
+        f"{name} is another model now: python tests/inference/reference_posteriors.py {name}"
+    )
+    fit = sb.sample(problem, seed=seed, ess=ess)
+    assert fit.converged
+    found = []
+    for place, (label, known) in enumerate(entry["parameters"].items()):
+        size = effective(fit)[place]
+        draws = fit.draws(label)
+        # draws of a result are fewer than its effective ones at times
+        size = min(size, len(draws))
+        for text, quantile in known["quantiles"].items():
+            p = float(text)
+            error = np.sqrt(p * (1 - p) * (1 / size + 1 / known["effective_draws"]))
+            score = (np.mean(draws < quantile["value"]) - p) / error
+            if abs(score) > STANDARD_ERRORS:
+                found.append(f"{label}, {p:.0%} quantile: {score:.1f} standard errors")
+    evidence, reference = fit.provenance["sampling"]["log_evidence"], entry["log_evidence"]
+    if evidence is not None and reference is not None:
+        score = (evidence[0] - reference["value"]) / np.hypot(evidence[1], reference["error"])
+        if abs(score) > STANDARD_ERRORS:
+            found.append(f"ln Z: {score:.1f} standard errors")
+    return found
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_fresh_fit_agrees(name: str) -> None:
+    assert not disagreements(name, seed=7, ess=400)
+
+
+def test_a_wrong_reference_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = REFERENCES["forearm-glass"]["parameters"]["frictional_shear_stress"]["quantiles"]["0.5"]
+    # the posterior is about a factor 1.5 wide either way: 15 % is a quarter of its width
+    monkeypatch.setitem(known, "value", 1.15 * known["value"])
+    assert disagreements("forearm-glass", seed=7, ess=400)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(REFERENCES))
+def test_fresh_fits_of_all_agree(name: str) -> None:
+    assert not disagreements(name, seed=8, ess=2000)
