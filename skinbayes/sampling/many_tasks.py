@@ -67,7 +67,7 @@ def _done_by_scheduler(
         shared = client.scatter(work, broadcast=True, hash=False)
         futures = {client.submit(_do, shared, task, pure=False): index for index, task in enumerate(tasks)}
         try:
-            for future in distributed.as_completed(list(futures)):
+            for future in distributed.as_completed(list(futures), loop=client.loop):
                 try:
                     result = future.result()
                 except distributed.KilledWorker:
