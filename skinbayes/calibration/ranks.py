@@ -49,7 +49,7 @@ class RankedTruths:
     ...     parameters={"typical_friction_coefficient": {"uniform": [0, 1]}},
     ...     noise={"family": "gaussian", "noise_scale": 0.1},
     ... )  # fmt: skip
-    >>> result = sb.calibrate(problem, simulations=4, ess=400)
+    >>> result = sb.calibrate(problem, simulations=2, ess=400)
     >>> result.quantities
     ('typical_friction_coefficient', 'log_likelihood')
     """
@@ -158,7 +158,7 @@ class RankedTruths:
         Examples
         --------
         >>> result.coverage("typical_friction_coefficient", 0.9)[1]
-        4
+        2
         """
         place, which = self.names.index(quantity), LEVELS.index(level)
         inside = [one.inside[which][place] for one in self._ended()]
@@ -180,7 +180,7 @@ class RankedTruths:
         Examples
         --------
         >>> [values.shape for values in result.recovery("typical_friction_coefficient")]
-        [(4,), (4,)]
+        [(2,), (2,)]
         """
         place, ended = self.names.index(quantity), self._ended()
         return np.array([one.z_scores[place] for one in ended]), np.array(
@@ -311,7 +311,7 @@ class RankedTruths:
         Examples
         --------
         >>> result.sentence().partition(":")[0]
-        'Nothing speaks against calibration in 4 simulations'
+        'Nothing speaks against calibration in 2 simulations'
         """
         total, ended = len(self.simulations), self._ended()
         if not ended:

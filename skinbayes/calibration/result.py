@@ -30,7 +30,7 @@ class Calibration(RankedTruths):
     ...     parameters={"typical_friction_coefficient": {"uniform": [0, 1]}},
     ...     noise={"family": "gaussian", "noise_scale": 0.1},
     ... )  # fmt: skip
-    >>> result = sb.calibrate(problem, simulations=2, ess=400)
+    >>> result = sb.calibrate(problem, simulations=1, ess=400)
     """
 
     def plot_ranks(self, width: str | None = None) -> Figure:
@@ -137,7 +137,7 @@ class OddsCalibration(ModelOdds):
     ...         parameters={"typical_friction_coefficient": {"uniform": [0, largest]}},
     ...         noise={"family": "gaussian", "noise_scale": 0.1},
     ...     )
-    >>> result = sb.calibrate(model(1), model(4), simulations=2, ess=400)
+    >>> result = sb.calibrate(model(1), model(4), simulations=1, ess=400)
     """
 
     def plot_odds(self, width: str | None = None) -> Figure:

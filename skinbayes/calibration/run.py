@@ -99,9 +99,9 @@ def calibrate(
     ...     parameters={"typical_friction_coefficient": {"uniform": [0, 1]}},
     ...     noise={"family": "gaussian", "noise_scale": 0.1},
     ... )  # fmt: skip
-    >>> result = sb.calibrate(problem, simulations=4, ess=400)
+    >>> result = sb.calibrate(problem, simulations=2, ess=400)
     >>> result.failed, len(result.ranks("typical_friction_coefficient"))
-    (0, 4)
+    (0, 2)
     """
     whole("simulations", simulations, 1)
     whole("cores", cores, 1)
