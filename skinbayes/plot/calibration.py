@@ -20,8 +20,9 @@ from skinbayes.plot.style import (
     set_title,
     shortened,
 )
-from skinbayes.plot.symbols import spoken_name
+from skinbayes.plot.symbols import figure_text, spoken_name
 from skinbayes.statistics.uniformity import uniform_band
+from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -251,14 +252,21 @@ def _panels(
         axes = figure.subplots(rows, columns, squeeze=False).reshape(-1)
         for ax, name in zip(axes, names, strict=False):
             draw(ax, name)
-            ax.set_title(
-                shortened(spoken_name(name), letters), pad=4.0, fontsize=9.0 if size >= SMALL else 7.5
-            )
+            ax.set_title(_brief(name, letters), pad=4.0, fontsize=9.0 if size >= SMALL else 7.5)
         for ax in axes[len(names) :]:
             ax.set_axis_off()
         _below(figure, label, size)
         set_title(figure, what, title)
     return figure
+
+
+def _brief(label: str, letters: int) -> str:
+    """A parameter as people say it, by its symbol where that is too long."""
+    spoken, (name, _, level) = spoken_name(label), label.partition("[")
+    known = QUANTITIES.get(name)
+    if len(spoken) <= letters or known is None or not known.symbol:
+        return figure_text(shortened(spoken, letters))
+    return figure_text(f"{known.symbol} ({level.removesuffix(']')})" if level else known.symbol)
 
 
 def _below(figure: Figure, label: str, size: float) -> None:
