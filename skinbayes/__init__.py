@@ -17,11 +17,12 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
-           "__version__", "build_joint_problem", "build_problem", "compare", "emulated", "fit_spectrum", "load_dataset",
-           "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "reduce_recordings", "register_engine",
-           "register_forward_model", "register_noise", "register_quantity", "sample"]  # fmt: skip
+           "__version__", "build_joint_problem", "build_problem", "calibrate", "compare", "emulated", "fit_spectrum",
+           "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "reduce_recordings",
+           "register_engine", "register_forward_model", "register_noise", "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
+    from skinbayes.calibration import calibrate
     from skinbayes.comparison import compare
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
@@ -52,6 +53,7 @@ _HOME = {
     "build_joint_problem": "skinbayes.problem",
     "load_joint_problem": "skinbayes.problem",
     "build_problem": "skinbayes.problem",
+    "calibrate": "skinbayes.calibration",
     "compare": "skinbayes.comparison",
     "emulated": "skinbayes.forward",
     "fit_spectrum": "skinbayes.fit",

@@ -13,6 +13,7 @@ from typing import Any
 
 import click
 
+from skinbayes.cli.calibrate import calibrate
 from skinbayes.cli.catalogue import datasets, models, show
 from skinbayes.cli.check import check
 from skinbayes.cli.compare import compare
@@ -74,6 +75,7 @@ for _command in (
     sensitivity,
     compare,
     design,
+    calibrate,
     report,
     reproduce,
 ):

@@ -1,5 +1,6 @@
-"""One self-contained HTML page about a fit, what was learnt and what was not, or about a comparison."""
+"""One self-contained HTML page about a fit, what was learnt and what was not, about a comparison or a calibration."""
 
+from skinbayes.report.calibration_page import write_calibration
 from skinbayes.report.comparison_page import write_comparison
 from skinbayes.report.digest import digest
 from skinbayes.report.joint_page import joint_digest, joint_remarks
@@ -12,6 +13,7 @@ __all__ = [
     "joint_digest",
     "joint_remarks",
     "remarks",
+    "write_calibration",
     "write_comparison",
     "write_report",
     "write_reproduction",

@@ -36,11 +36,35 @@ def sharing_out(
     if processes == 1:
         yield lambda tasks: [work(task) for task in tasks]
         return
+    with _crew(work, processes) as crew:
+        yield lambda tasks: [result for _, result in sorted(_as_done(crew, tasks), key=lambda one: one[0])]
+
+
+def done_by_processes(
+    work: Callable[[Task], Result], tasks: Sequence[Task], processes: int
+) -> Iterator[tuple[int, Result]]:
+    """Do tasks in this process, or in several; yields the number of each task and its result as soon as it is there.
+
+    Parameters
+    ----------
+    work : as :func:`sharing_out` takes it
+    tasks : what is to be done
+    processes : how many share the tasks
+    """
+    if processes == 1:
+        yield from ((index, work(task)) for index, task in enumerate(tasks))
+        return
+    with _crew(work, min(processes, len(tasks) or 1)) as crew:
+        yield from _as_done(crew, tasks)
+
+
+@contextmanager
+def _crew(work: Callable[[Any], Any], processes: int) -> Iterator[list[_Worker]]:
     crew: list[_Worker] = []
     try:
         for _ in range(processes):
             crew.append(_Worker(work))
-        yield lambda tasks: _share_out(crew, tasks)
+        yield crew
     finally:
         for worker in crew:
             worker.stop()
@@ -141,10 +165,9 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-def _share_out(crew: list[_Worker], tasks: Sequence[Any]) -> list[Any]:
-    """Give each free worker the next task; which worker does what does not change the result."""
+def _as_done(crew: list[_Worker], tasks: Sequence[Any]) -> Iterator[tuple[int, Any]]:
+    """Give each free worker the next task; which worker does what does not change a result."""
     waiting = list(enumerate(tasks))[::-1]
-    results: dict[int, Any] = {}
     busy = crew[: len(waiting)]
     for worker in busy:
         worker.send(*waiting.pop())
@@ -157,9 +180,8 @@ def _share_out(crew: list[_Worker], tasks: Sequence[Any]) -> list[Any]:
             index, result = reply
             if isinstance(result, Exception):
                 raise result
-            results[index] = result
             if waiting:
                 worker.send(*waiting.pop())
             else:
                 busy.remove(worker)
-    return [results[index] for index in range(len(tasks))]
+            yield index, result

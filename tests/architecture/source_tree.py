@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 HEAVY = (
     "arviz",
     "corner",
+    "distributed",
     "dynesty",
     "emcee",
     "h5py",

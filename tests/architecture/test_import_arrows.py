@@ -39,7 +39,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "lubrication": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
-    "sampling": {"errors", "arrays", "defaults", *FILES, "statistics"},
+    "sampling": {"errors", "arrays", "defaults", *FILES, "statistics", "version"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
     "files": {*WORDS, "sealed", "plugins", "units", "roughness", "topography", "statistics"},
@@ -49,30 +49,34 @@ MAY_KNOW: dict[str, set[str]] = {
     "fit": {*WORDS, *FILES, "plugins", "units", "statistics", "sampling", "diagnose", "files", "topography", "problem",
             "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
+    "calibration": {*WORDS, *FILES, "statistics", "sampling", "problem", "fit"},
     # the paper beside the physics
     "reproduce": {*WORDS, "units", "files", *PHYSICS},
     # faces
     "plot": {*WORDS, "atomic", "units", "topography", "reproduce", "roughness", "statistics", "diagnose", "forward", "problem",
-             "fit", "comparison"},
+             "fit", "comparison", "calibration"},
     "report": {*WORDS, "atomic", "units", "roughness", "topography", "statistics", "diagnose", "files", "forward", "problem",
-               "fit", "comparison", "plot", "reproduce"},
-    "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "plot", "report",
-            "reproduce",
-            "version"},
+               "fit", "comparison", "calibration", "plot", "reproduce"},
+    "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "calibration", "plot",
+            "report", "reproduce", "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
     "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
-                  "comparison"},
+                  "comparison", "calibration"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
 
-FIT_METHODS_MAY_DRAW = "plot"
-"""``Fit.plot_*`` reach up to the figures, lazily: a convenience of the result, not a dependency of the module."""
+METHODS_MAY_DRAW = {
+    "skinbayes.fit.drawn_fit": {"DrawnFit"},
+    "skinbayes.calibration.result": {"Calibration", "OddsCalibration"},
+}
+"""``plot_*`` of results reach up to the figures, lazily: a convenience of the result, not a dependency of the module."""
 
 HOMES: dict[str, set[str]] = {
     "SurfaceTopography": {"files"},
     "arviz": {"fit"},
     "click": {"cli"},
+    "distributed": {"sampling"},
     "corner": {"plot"},
     "dynesty": {"sampling"},
     "emcee": {"sampling"},
@@ -92,14 +96,24 @@ HOMES: dict[str, set[str]] = {
         "defaults",
         *FILES,
     },
-    "pandas": {"files", "fit", "plot", "report"},
+    "pandas": {"calibration", "files", "fit", "plot", "report"},
     "pint": {"units"},
     "PIL": {"files"},
     "platformdirs": {"emulation"},
     "pydantic": {"files", "fit"},
     "rich": {"cli"},
     "tomlkit": {"files"},
-    "scipy": {*PHYSICS, *STATISTICS, "files", "problem", "fit", "comparison", "plot", "reproduce"},
+    "scipy": {
+        *PHYSICS,
+        *STATISTICS,
+        "files",
+        "problem",
+        "fit",
+        "comparison",
+        "calibration",
+        "plot",
+        "reproduce",
+    },
     "xarray": {"fit", "plot", "report"},
 }
 """Library to the floors that may import it; a library that is not here is not a dependency."""
@@ -107,10 +121,10 @@ HOMES: dict[str, set[str]] = {
 
 def reaches_up_lazily(found: Import) -> bool:
     return (
-        found.module == "skinbayes.fit.drawn_fit"
-        and floor_of(found.target) == FIT_METHODS_MAY_DRAW
+        found.module in METHODS_MAY_DRAW
+        and floor_of(found.target) == "plot"
         and len(found.inside) == 2
-        and found.inside[0] == "DrawnFit"
+        and found.inside[0] in METHODS_MAY_DRAW[found.module]
         and found.inside[1].startswith("plot_")
     )
 

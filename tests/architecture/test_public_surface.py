@@ -18,8 +18,8 @@ from source_tree import PACKAGE, Definition, public_definitions
 import skinbayes
 
 DOCUMENTED = ("roughness", "topography", "contact", "wetting", "lubrication", "friction", "statistics", "sampling", "diagnose",
-              "files", "forward", "problem", "fit", "comparison", "plot", "report", "units", "vocabulary", "errors",
-              "arrays", "reproduce")  # fmt: skip
+              "files", "forward", "problem", "fit", "comparison", "calibration", "plot", "report", "units", "vocabulary",
+              "errors", "arrays", "reproduce")  # fmt: skip
 
 ATOM = r"(?:Pa|m|s|kg|N|J|W|rad|mol)(?:[²³⁴]|\^-?\d|\^\(\d − \w+\))?"
 UNIT = re.compile(
@@ -74,10 +74,10 @@ def numeric_names(found: Any) -> list[str]:
 
 def test_top_level_names() -> None:
     assert skinbayes.__all__ == ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily",
-                                 "Problem", "Quantity", "__version__", "build_joint_problem", "build_problem", "compare",
-                                 "emulated", "fit_spectrum", "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem",
-                                 "load_problem", "register_engine", "register_forward_model", "register_noise",
-                                 "register_quantity", "sample"]  # fmt: skip
+                                 "Problem", "Quantity", "__version__", "build_joint_problem", "build_problem", "calibrate",
+                                 "compare", "emulated", "fit_spectrum", "load_dataset", "load_fit", "load_joint_fit",
+                                 "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
+                                 "register_noise", "register_quantity", "sample"]  # fmt: skip
     for name in skinbayes.__all__:
         assert getattr(skinbayes, name) is not None
     assert dir(skinbayes) == sorted(skinbayes.__all__)
@@ -100,6 +100,7 @@ def test_top_level_names() -> None:
         "forward",
         "problem",
         "fit",
+        "calibration",
         "reproduce",
     ),
 )

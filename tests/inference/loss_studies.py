@@ -7,9 +7,10 @@ from functools import lru_cache
 
 import numpy as np
 from importance import importance_sample, mode
-from simulated_coverage import possible_draws, with_data
+from simulated_coverage import possible_draws
 
 from skinbayes.problem import Problem, load_problem
+from skinbayes.problem.simulated import with_data
 
 SEED = 31
 LOSS = "loss_tangent_bulk"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from importance import importance_sample
 from scipy import stats
 
 from skinbayes.problem import Problem
+from skinbayes.problem.simulated import with_data
 
 ALPHA = 5e-4
 """Probability that one test of one parameter fails though the posterior is right."""
@@ -44,15 +45,6 @@ def possible_draws(problem: Problem, rng: np.random.Generator, count: int) -> np
     draws = draws[np.isfinite(problem.predict_data(draws)).all(axis=1)]
     assert len(draws) >= count, "the forward model is silent for half of the prior"
     return draws[:count]
-
-
-def with_data(maker: Problem, data: np.ndarray) -> Problem:
-    """The problem with other data of its one observable at the same rows."""
-    (observation,) = maker.observations
-    problem = replace(maker, observations=(replace(observation, values=data),))
-    # what is prepared depends on priors and rows only, so that one serves all
-    problem.__dict__["model"] = maker.model
-    return problem
 
 
 def recover(maker: Problem, simulations: int, seed: int) -> Recovered:

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
-from simulated_coverage import with_data
 from small_models import finger, two_parameters
 
 from skinbayes.errors import FingerprintMismatch
 from skinbayes.fit import sample
 from skinbayes.forward import forward_models
 from skinbayes.problem import load_problem
+from skinbayes.problem.simulated import with_data
 from skinbayes.statistics import make_prior, noise_family
 
 GROUPED = 'frictional_shear_stress = { lognormal = ["10 MPa", 1.0] }\nyoung_modulus_layer = "7 MPa"'

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy import stats
-from simulated_coverage import with_data
 from small_models import finger, three_parameters
 
 from skinbayes.fit import sample
 from skinbayes.problem import load_problem
+from skinbayes.problem.simulated import with_data
 from skinbayes.problem.target import PosteriorTarget
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions

@@ -7,10 +7,11 @@ import pytest
 from importance import importance_sample
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy import stats
-from simulated_coverage import Recovered, failed_tests, possible_draws, recover, with_data
+from simulated_coverage import Recovered, failed_tests, possible_draws, recover
 from small_models import write_model
 
 from skinbayes.problem import Problem, load_problem
+from skinbayes.problem.simulated import with_data
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
 
