@@ -285,9 +285,7 @@ ALL = (
         "1",
         "standard deviation of a parameter between people, of its ln if it is positive",
     ),
-    Quantity(
-        "population_deviate", "z_p", "1", "normal score of one person in the population", lower=-inf
-    ),
+    Quantity("population_deviate", "z_p", "1", "normal score of one person in the population", lower=-inf),
     Quantity(
         "contrast", "δ", "1", "what a treatment adds to a parameter, to its ln if it is positive", lower=-inf
     ),

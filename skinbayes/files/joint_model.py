@@ -12,9 +12,9 @@ from pydantic import ValidationError
 
 from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec, check_printable, find_model, read_block, read_parameters
-from skinbayes.files.population_block import read_populations
 from skinbayes.files.modelschema import ExperimentBlock, JointBlock, ModelBlock
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.population_block import read_populations
 from skinbayes.files.stated_surface import StatedSurface, stated_about
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.plugins import installed_forward_models

@@ -124,18 +124,28 @@ def _read(quantity: Quantity, entry: Mapping[str, Any], where: Callable[..., str
     by = label_column(entry["by"], where("by"))
     _known_keys(block, (*_KEYS, "fixed", *FAMILIES), where, POPULATION)
     if "scale" not in block:
-        raise InputError(f"{place}: found no 'scale'; expected how far levels of {by} differ, such as {_usual(quantity)}")
-    scale = _scale("population_scale", quantity, block["scale"], quantity.name, f"levels of {by}", where, "scale")
+        raise InputError(
+            f"{place}: found no 'scale'; expected how far levels of {by} differ, such as {_usual(quantity)}"
+        )
+    scale = _scale(
+        "population_scale", quantity, block["scale"], quantity.name, f"levels of {by}", where, "scale"
+    )
     within, within_scale = None, None
     if (nested := block.get("within")) is not None:
         _known_keys(nested, ("column", "scale"), where, POPULATION, "within")
-        within = label_column(_needed(nested, "column", where, "within"), where(POPULATION, "within", "column"))
+        within = label_column(
+            _needed(nested, "column", where, "within"), where(POPULATION, "within", "column")
+        )
         level, between = f"{quantity.name}, {within}", f"levels of {within} of one {by}"
         raw = _needed(nested, "scale", where, "within")
         within_scale = _scale("population_scale", quantity, raw, level, between, where, "within", "scale")
-    found = PopulationSpec(quantity.name, by, scale, within, within_scale, _contrast(quantity, block, by, where))
+    found = PopulationSpec(
+        quantity.name, by, scale, within, within_scale, _contrast(quantity, block, by, where)
+    )
     if len(set(found.columns)) < len(found.columns):
-        raise InputError(f"{place}: 'by', 'within' and 'contrast' name the columns {', '.join(found.columns)}; expected each once")
+        raise InputError(
+            f"{place}: 'by', 'within' and 'contrast' name the columns {', '.join(found.columns)}; expected each once"
+        )
     return found
 
 
@@ -158,7 +168,9 @@ def _contrast(
     scale = None
     if "scale" in one:
         between = f"the effects on levels of {by}"
-        scale = _scale("contrast_scale", quantity, one["scale"], quantity.name, between, where, "contrast", "scale")
+        scale = _scale(
+            "contrast_scale", quantity, one["scale"], quantity.name, between, where, "contrast", "scale"
+        )
     return ContrastSpec(column, reference, effect, scale)
 
 

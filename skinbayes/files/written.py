@@ -110,7 +110,9 @@ def _written_population(block: Mapping[str, Any], unit: str, where: str) -> dict
         place = f"{where}.{key}"
         if key in ("within", "contrast") and isinstance(value, Mapping):
             found[key] = {
-                name: written_parameter(entry, "1", f"{place}.{name}") if name in ("scale", "effect") else entry
+                name: written_parameter(entry, "1", f"{place}.{name}")
+                if name in ("scale", "effect")
+                else entry
                 for name, entry in value.items()
             }
         elif key == "scale":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from skinbayes.problem.inputs import Conditions, label_meant
 from skinbayes.statistics.hierarchy import Grouping, Hierarchy, Term
 from skinbayes.statistics.priors import make_prior
 from skinbayes.statistics.transforms import Transform
+from skinbayes.vocabulary import QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,23 @@ class Part:
     active: NDArray[np.bool_]
 
 
+class Named(NamedTuple):
+    """A quantity of each level.
+
+    Attributes
+    ----------
+    name : such as ``person_young_modulus_layer``, or ``young_modulus_layer_ratio`` of a treatment
+    levels : names
+    values : ``(B, J)``, SI
+    unit : SI unit
+    """
+
+    name: str
+    levels: tuple[str, ...]
+    values: FloatArray
+    unit: str
+
+
 def population_parameters(
     specs: Sequence[PopulationSpec], conditions: Conditions, where: object
 ) -> tuple[ParameterSpec, ...]:
@@ -56,7 +75,9 @@ def population_parameters(
         for column in spec.columns:
             if column not in conditions.labels:
                 raise InputError(
-                    f"{place}: the data have no column '{column}'.{label_meant(column, conditions.labels)}".rstrip(".")
+                    f"{place}: the data have no column '{column}'.{label_meant(column, conditions.labels)}".rstrip(
+                        "."
+                    )
                 )
         if len(set(conditions.labels[spec.by].tolist())) < 2:
             raise InputError(
@@ -89,9 +110,7 @@ def _deviate(label: str) -> ParameterSpec:
     )  # fmt: skip
 
 
-def parts(
-    spec: PopulationSpec, conditions: Conditions, known: Sequence[str] | None = None
-) -> list[Part]:
+def parts(spec: PopulationSpec, conditions: Conditions, known: Sequence[str] | None = None) -> list[Part]:
     """The terms of a parameter at rows.
 
     Parameters
@@ -125,6 +144,14 @@ def contrasted(level: str, reference: str) -> str:
     return f"{level}/{reference}"
 
 
+def new_people(populations: Populations, conditions: Conditions) -> tuple[ParameterSpec, ...]:
+    """Deviates of people at rows that are not among the parameters."""
+    wanted = [
+        label for spec in populations.specs for part in parts(spec, conditions) for label in part.deviates
+    ]
+    return tuple(_deviate(label) for label in wanted if label not in populations.free)
+
+
 def _part(
     location: str | None,
     scale: str | None,
@@ -137,7 +164,9 @@ def _part(
     used = dict.fromkeys(label for label, on in zip(labels, deviating, strict=True) if on)
     deviates = tuple(label for label in used if known is None or label in set(known))
     place = {label: i for i, label in enumerate(deviates)}
-    level = np.array([place.get(label, -1) if on else -1 for label, on in zip(labels, deviating, strict=True)])
+    level = np.array(
+        [place.get(label, -1) if on else -1 for label, on in zip(labels, deviating, strict=True)]
+    )
     return Part(location, scale, deviates, level.astype(np.intp), np.asarray(active))
 
 
@@ -176,7 +205,10 @@ class Populations:
         return [(spec, parts(spec, conditions, self.free)) for spec in self.specs]
 
     def inputs(
-        self, theta: FloatArray, values: Mapping[str, FloatArray], bound: Sequence[tuple[PopulationSpec, list[Part]]]
+        self,
+        theta: FloatArray,
+        values: Mapping[str, FloatArray],
+        bound: Sequence[tuple[PopulationSpec, list[Part]]],
     ) -> dict[str, FloatArray]:
         """Values of the parameters at rows, ``(B or 1, N)``, SI.
 
@@ -206,6 +238,52 @@ class Populations:
         if label in self.fixed:
             return np.full((1, 1), self.fixed[label])
         return theta[:, [self._places[label]]]
+
+    def people(self, theta: FloatArray, conditions: Conditions) -> list[Named]:
+        """Values of all levels, and what treatments do, for parameter vectors ``(B, D)``."""
+        found = []
+        for spec, of_spec in self.at(conditions):
+            natural, quantity = spec.natural, QUANTITIES[spec.name]
+            median = self._column(theta, spec.name)
+            base = natural.forward(median)
+            for number, part in enumerate(of_spec):
+                scores = self._scores(theta, part)
+                levels = tuple(
+                    label.partition(f"[{spec.name}, ")[2].removesuffix("]") for label in part.deviates
+                )
+                if part.location is None:
+                    place = base + scores
+                    if number:  # nested: on top of the level that it is in
+                        first = [
+                            int(of_spec[0].level[np.argmax(part.level == i)]) for i in range(len(levels))
+                        ]
+                        place = base + self._scores(theta, of_spec[0])[:, first] + scores
+                    column = "_".join(spec.columns[: 1 + (number > 0)])
+                    found.append(
+                        Named(f"{column}_{spec.name}", levels, natural.inverse(place), quantity.unit)
+                    )
+                    continue
+                effect = self._column(theta, part.location)
+                ratio = natural.kind == "log"
+                word, unit = ("ratio", "1") if ratio else ("difference", quantity.unit)
+                against = part.location.rpartition(", ")[2].removesuffix("]")
+                contrast = spec.contrast
+                assert contrast is not None
+                whole = np.exp(effect) if ratio else natural.inverse(base + effect) - median
+                said = contrasted(against, contrast.reference)
+                found.append(Named(f"{spec.name}_{word}", (said,), whole, unit))
+                if levels:
+                    each = effect + scores
+                    own = np.exp(each) if ratio else natural.inverse(base + each) - median
+                    found.append(Named(f"{spec.by}_{spec.name}_{word}", levels, own, unit))
+        return found
+
+    def _scores(self, theta: FloatArray, part: Part) -> FloatArray:
+        """Deviates of a term times their scale, ``(B, J)``."""
+        if part.scale is None or not part.deviates:
+            return np.zeros((len(theta), 0))
+        scores = theta[:, [self._places[label] for label in part.deviates]]
+        return np.asarray(self._column(theta, part.scale) * scores)
 
     def levels_of_rows(self, conditions: Conditions) -> dict[str, NDArray[np.intp]]:
         """What tells rows of different people apart: a number for each row and term."""
@@ -249,5 +327,10 @@ class Populations:
             at = self._places[location]
         fixed = scale in self.fixed
         return Term(
-            places, at, value, transform, -1 if fixed else self._places[scale], self.fixed[scale] if fixed else 0.0
+            places,
+            at,
+            value,
+            transform,
+            -1 if fixed else self._places[scale],
+            self.fixed[scale] if fixed else 0.0,
         )

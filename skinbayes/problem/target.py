@@ -112,7 +112,11 @@ class PosteriorTarget:
         None also where rows share something that is integrated out: then people are not independent given what they share.
         """
         problem = self.problem
-        if not isinstance(problem, StatisticalModel) or problem.populations is None or problem.shared is not None:
+        if (
+            not isinstance(problem, StatisticalModel)
+            or problem.populations is None
+            or problem.shared is not None
+        ):
             return None
         return problem.populations.hierarchy(problem.conditions, len(problem.observations))
 

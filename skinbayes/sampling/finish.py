@@ -74,7 +74,12 @@ class Finish:
         """
         options = self._options
         # in the tens of dimensions of people a proposal resembles no posterior
-        due = options.importance and not is_hierarchical(self._target) and steps >= self._not_before and steps > 0
+        due = (
+            options.importance
+            and not is_hierarchical(self._target)
+            and steps >= self._not_before
+            and steps > 0
+        )
         if not due or not is_check(steps, options.block_steps, FIRST_ATTEMPT):
             return None
         first = max(steps // 2, discarded)

@@ -93,7 +93,8 @@ class HierarchicalMove:
             for _ in range(REPEATS):
                 for term in self._terms:
                     self._move_population(x, still, term, random)
-            x, terms = self._move_shared(x, terms, still, model)
+            for places in self._chosen(random):
+                x, terms = self._move_shared(x, terms, still, places, model)
             position[moved], pointwise[moved] = x, terms
         self._coordinates, self._pointwise = position, pointwise
         state.coords = position.copy()
@@ -163,37 +164,51 @@ class HierarchicalMove:
         size = _sizes(random, (len(x),), np.array(len(places)))[:, np.newaxis]
         moved = x.copy()
         moved[:, places] += size * step + JITTER * random.standard_normal(step.shape)
-        (here, spread), (there, wider) = (self._of_term(term, one) for one in (x, moved))
+        (here, spread), (there, wider) = (self._of_term(term, one[:, places]) for one in (x, moved))
         scores = x[:, term.deviates]
         with np.errstate(all="ignore"):
-            new = (here[:, np.newaxis] + spread[:, np.newaxis] * scores - there[:, np.newaxis]) / wider[:, np.newaxis]
-            gain = self._target.log_prior_of(places, moved[:, places]) - self._target.log_prior_of(places, x[:, places])
+            new = (here[:, np.newaxis] + spread[:, np.newaxis] * scores - there[:, np.newaxis]) / wider[
+                :, np.newaxis
+            ]
+            gain = self._target.log_prior_of(places, moved[:, places]) - self._target.log_prior_of(
+                places, x[:, places]
+            )
             gain += len(term.deviates) * np.log(spread / wider) - 0.5 * (new**2 - scores**2).sum(axis=1)
         taken = np.log(random.random_sample(len(x))) < gain
         moved[:, term.deviates] = new
         x[taken] = moved[taken]
 
     def _of_term(self, term: Term, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        theta = self._target.transform.inverse(position)
-        return term.located(theta), term.scaled(theta)
+        """Location and scale of a term for those of its coordinates that are free, ``(B, K)``; each ``(B,)``."""
+        transforms = self._target.transform.transforms
+        free = {place: transforms[place].inverse(position[:, i]) for i, place in enumerate(term.shared)}
+        fixed = np.full((2, len(position)), [[term.location_value], [term.scale_value]])
+        located = term.natural.forward(free[term.location]) if term.location >= 0 else fixed[0]
+        return located, free[term.scale] if term.scale >= 0 else fixed[1]
+
+    def _chosen(self, random: Any) -> list[NDArray[np.intp]]:
+        """What of all that people share is moved together: everything, some of it, and one by itself."""
+        places = self._shared
+        if not len(places):
+            return []
+        some = places[random.random_sample(len(places)) < 0.5]
+        one = places[[random.randint(len(places))]]
+        return [found for found in (places, some, one) if len(found)]
 
     def _move_shared(
-        self, x: FloatArray, terms: FloatArray, still: FloatArray, model: Any
+        self, x: FloatArray, terms: FloatArray, still: FloatArray, places: NDArray[np.intp], model: Any
     ) -> tuple[FloatArray, FloatArray]:
-        """All that people share, or some of it, with their deviates as they are."""
-        random, places = model.random, self._shared
-        if not len(places):
-            return x, terms
-        if random.random_sample() < 0.5:
-            chosen = random.random_sample(len(places)) < 0.5
-            places = places[chosen] if chosen.any() else places[[random.randint(len(places))]]
+        """Some of what people share with their deviates as they are."""
+        random = model.random
         first, second = _pairs(random, (len(x),), len(still))
         step = still[first][:, places] - still[second][:, places]
         size = _sizes(random, (len(x),), np.array(len(places)))[:, np.newaxis]
         moved = x.copy()
         moved[:, places] += size * step + JITTER * random.standard_normal(step.shape)
         shared = self._shared.tolist()
-        gain = self._target.log_prior_of(shared, moved[:, shared]) - self._target.log_prior_of(shared, x[:, shared])
+        gain = self._target.log_prior_of(shared, moved[:, shared]) - self._target.log_prior_of(
+            shared, x[:, shared]
+        )
         found = np.full(terms.shape, -np.inf)
         possible = np.isfinite(gain)
         if possible.any():
