@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isfinite
@@ -20,6 +19,7 @@ from skinbayes.statistics.annealing import SWEEPS, anneal, effective_number, lar
 from skinbayes.statistics.densities import LogDensity
 from skinbayes.statistics.hierarchy import Hierarchy
 from skinbayes.statistics.innovations import InnovationTransform
+from skinbayes.statistics.priors import IndependentPriors
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 
 CANDIDATES_PER_START = 20
@@ -137,19 +137,22 @@ class PosteriorTarget:
     def _prior(self) -> LogDensity:
         return self.problem.prior_density().transformed(self.transform)
 
-    def log_prior_of(self, places: Sequence[int], position: FloatArray) -> FloatArray:
-        """Log prior density of some coordinates, ``(B,)``, for their values ``(B, K)``; Jacobian included."""
-        density = self._priors_of(tuple(places))
+    def shared_parameters(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Of those coordinates that are no deviates, ``(B, K)``: parameters in SI, and ln of the prior density of each."""
+        transform, prior = self._of_shared
         with np.errstate(all="ignore"):
-            return density(position)
+            theta = transform.inverse(position)
+            density = prior.each(theta)
+            # where the density is zero the Jacobian may be infinite
+            return theta, np.where(density > -np.inf, density + transform.log_jacobian_each(position), -np.inf)
 
-    def _priors_of(self, places: tuple[int, ...]) -> LogDensity:
-        known: dict[tuple[int, ...], LogDensity] = self.__dict__.setdefault("_some_priors", {})
-        if places not in known:
-            priors = [self.problem.free[i].prior for i in places]
-            transform = VectorTransform(tuple(self.transform.transforms[i] for i in places))
-            known[places] = LogDensity.independent([p for p in priors if p]).transformed(transform)
-        return known[places]
+    @cached_property
+    def _of_shared(self) -> tuple[VectorTransform, IndependentPriors]:
+        assert self.hierarchy is not None
+        places = self.hierarchy.shared
+        priors = [self.problem.free[i].prior for i in places]
+        transform = VectorTransform(tuple(self.transform.transforms[i] for i in places))
+        return transform, IndependentPriors(tuple(p for p in priors if p))
 
     def prior_transform(self, unit: FloatArray) -> FloatArray:
         """Positions at quantiles of the prior, rows of the unit cube ``(B, D)``."""

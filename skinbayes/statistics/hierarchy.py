@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from skinbayes.arrays import FloatArray
 from skinbayes.statistics.transforms import Transform
 
 
@@ -36,18 +35,6 @@ class Term:
     natural: Transform
     scale: int
     scale_value: float
-
-    def located(self, theta: FloatArray) -> FloatArray:
-        """Location for parameter vectors ``(B, D)``, shape ``(B,)``."""
-        if self.location < 0:
-            return np.full(len(theta), self.location_value)
-        return self.natural.forward(theta[:, self.location])
-
-    def scaled(self, theta: FloatArray) -> FloatArray:
-        """Standard deviation for parameter vectors ``(B, D)``, shape ``(B,)``."""
-        if self.scale < 0:
-            return np.full(len(theta), self.scale_value)
-        return theta[:, self.scale]
 
     @property
     def shared(self) -> list[int]:
