@@ -112,8 +112,8 @@ def _read(block: JointBlock, path: Path, text: str, where: Places) -> JointSpec:
     surface = block.surface
     if populations := read_populations(block.parameters, where):
         raise InputError(
-            f"{where('parameters', populations[0].name, 'population')}: populations are for models of one experiment; give one value "
-            "for all, or one for each level"
+            f"{where('parameters', populations[0].name, 'population')}: populations are for models of one experiment; give "
+            "one value for all, or one for each level"
         )
     parameters = read_parameters(block.parameters, where)
     for p in parameters:

@@ -160,7 +160,8 @@ def _contrast(
     reference = _needed(one, "reference", where, "contrast")
     if not isinstance(reference, str) or not reference:
         raise InputError(
-            f"{where(POPULATION, 'contrast', 'reference')}: found {reference!r:.60}; expected the level of {column} without effect"
+            f"{where(POPULATION, 'contrast', 'reference')}: found {reference!r:.60}; expected the level of {column} without "
+            "effect"
         )
     place, unit = where(POPULATION, "contrast", "effect"), _unit(quantity)
     raw = _needed(one, "effect", where, "contrast")

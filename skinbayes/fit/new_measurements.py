@@ -53,8 +53,8 @@ class NewMeasurements:
         names = new.measured.observables
         if new.people:
             raise InputError(
-                f"{new.dataset.path}: rows of {' and '.join(new.new_people)} that were not measured, whose values are not known; the "
-                "information of rows is computed for those that the fit has seen"
+                f"{new.dataset.path}: rows of {' and '.join(new.new_people)} that were not measured, whose values are not "
+                "known; the information of rows is computed for those that the fit has seen"
             )
         if new.measured.shared is not None:
             theta = theta[: max(200, MOST_NUMBERS // new.measured.shared.n_effects**2)]

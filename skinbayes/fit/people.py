@@ -84,7 +84,10 @@ class Contrast:
         )
         if self.people:
             sure = sum(max(p, 1.0 - p) >= SURE for _, p in self.people.values())
-            said += f" Of {len(self.people)} taken one by one {sure or 'none'} {'is' if sure == 1 else 'are'} changed with a probability of {number(100 * SURE)} % or more."
+            said += (
+                f" Of {len(self.people)} taken one by one {sure or 'none'} {'is' if sure == 1 else 'are'} changed with a "
+                f"probability of {number(100 * SURE)} % or more."
+            )
         return said
 
 
@@ -108,8 +111,8 @@ class PopulationFinding:
     median : 5, 50 and 95 % quantiles of the median of the population
     scale : the same of the standard deviation between people
     scale_of : ``"ln"``, ``"logit"`` or ``""``: of what
-    pooling : 1 if the data tell nobody apart, 0 if the population says nothing about anybody: one less the variance between people
-        of their mean scores over the mean of the variance between their scores (Gelman & Pardoe 2006,
+    pooling : 1 if the data tell nobody apart, 0 if the population says nothing about anybody: one less the variance between
+        people of their mean scores over the mean of the variance between their scores (Gelman & Pardoe 2006,
         doi 10.1198/004017005000000517)
     people : each level
     nested : each level of a second column within the first
@@ -156,8 +159,8 @@ class PopulationFinding:
         return (
             f"{name[:1].upper()}{name[1:]}: {quantity(middle, self.unit)} for the median {self.by} (90 %: "
             f"{interval(low, high, self.unit, typical=middle)}); {apart}. The {len(medians)} have medians between "
-            f"{interval(min(medians), max(medians), self.unit, joint=' and ')}; {percent(self.pooling)} of how they differ is hidden "
-            "by what the data do not tell."
+            f"{interval(min(medians), max(medians), self.unit, joint=' and ')}; of how they differ "
+            f"{percent(self.pooling)} is not told by the data."
         )
 
 

@@ -165,11 +165,12 @@ def people_sentences(problem: StatisticalModel) -> list[str]:
                 if not number
                 else f"of {len(told)} levels of {spec.within} within {spec.by}"
                 if part.location is None
-                else f"and what {part.location.rpartition(', ')[2].removesuffix(']')} does to it, of {len(told)} levels of {spec.by}"
+                else f"and what {part.location.rpartition(', ')[2].removesuffix(']')} does to it, of {len(told)} levels of "
+                f"{spec.by}"
             )
             said.append(
-                f"{spec.name} has a population: {what}. By the priors the data tell it of {known} of them apart from the others; "
-                "of the rest the population speaks."
+                f"{spec.name} has a population {what}. At the prior medians the data tell {known} of them apart from the "
+                f"others{'' if known == len(told) else '; of the rest the population speaks'}."
             )
         if (contrast := spec.contrast) is not None:
             labels = problem.conditions.labels
@@ -178,9 +179,10 @@ def people_sentences(problem: StatisticalModel) -> list[str]:
                 for level in set(labels[spec.by])
             }
             both = sum(contrast.reference in one and len(one) > 1 for one in seen.values())
+            rests = "rests on these" if both else "is one between groups"
             said.append(
-                f"{both} of {len(seen)} levels of {spec.by} were measured with and without the treatment '{contrast.column}', which "
-                f"acts on {spec.name}; the contrast rests on these{'' if both else ': on none, so that it is one between groups'}."
+                f"{both} of {len(seen)} levels of {spec.by} were measured with and without the treatment '{contrast.column}', "
+                f"which acts on {spec.name}; the contrast {rests}."
             )
     if problem.shared is not None:
         said.append(

@@ -45,8 +45,8 @@ def check_populations(spec: ModelSpec, parameters: Sequence[ParameterSpec]) -> N
     for p in parameters:
         if p.same_as is not None and p.same_as.partition("[")[0] in names:
             raise InputError(
-                f"{spec.path}: parameters.{p.label}.same_as: '{p.same_as}' has a population, which a tied parameter cannot follow; "
-                "expected a parameter without one"
+                f"{spec.path}: parameters.{p.label}.same_as: '{p.same_as}' has a population, which a tied parameter cannot "
+                "follow; expected a parameter without one"
             )
 
 

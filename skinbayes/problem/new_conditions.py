@@ -47,7 +47,7 @@ class NewConditions:
     people: tuple[str, ...] = ()
 
     def of_people(self, theta: FloatArray, rng: np.random.Generator | None = None) -> FloatArray:
-        """Parameters of the problem for those of the measured one, ``(B, D)``: new people are drawn, or the median without ``rng``."""
+        """Parameters of the problem for those of the measured one: new people are drawn, or as the median without ``rng``."""
         size = len(theta), len(self.people)
         anew = np.zeros(size) if rng is None else rng.standard_normal(size)
         return np.concatenate([theta, anew], axis=1)

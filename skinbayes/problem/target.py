@@ -144,7 +144,9 @@ class PosteriorTarget:
             theta = transform.inverse(position)
             density = prior.each(theta)
             # where the density is zero the Jacobian may be infinite
-            return theta, np.where(density > -np.inf, density + transform.log_jacobian_each(position), -np.inf)
+            return theta, np.where(
+                density > -np.inf, density + transform.log_jacobian_each(position), -np.inf
+            )
 
     @cached_property
     def _of_shared(self) -> tuple[VectorTransform, IndependentPriors]:
@@ -237,8 +239,8 @@ class PosteriorTarget:
         usable = np.isfinite(self.log_density(position)) & np.isfinite(position).all(axis=-1)
         if usable.sum() < count:
             raise InputError(
-                f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density, where "
-                f"{count} are needed to start from; narrow the priors to values at which the forward model gives a prediction"
+                f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density, "
+                f"where {count} are needed to start from; narrow the priors to values at which the forward model gives a prediction"
             )
         return position[usable][:count], len(theta)
 

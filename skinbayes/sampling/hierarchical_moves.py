@@ -72,7 +72,9 @@ class HierarchicalMove:
         self._shared = self._of.shared
         place = {int(one): i for i, one in enumerate(self._shared)}
         # locations and scales among what is shared
-        self._terms = [(term, np.array([place[i] for i in term.shared])) for term in self._of.terms if term.shared]
+        self._terms = [
+            (term, np.array([place[i] for i in term.shared])) for term in self._of.terms if term.shared
+        ]
         self._places = place
         used = np.concatenate([np.zeros(0, dtype=np.intp), *(places for _, places in self._terms)])
         self._others = np.setdiff1d(np.arange(len(self._shared)), used)
@@ -210,7 +212,9 @@ class HierarchicalMove:
             self._move_shared(walkers, still, self._others, None, model)
         for _ in range(1 + len(self._terms) // 2 if self._terms else 0):
             which = random.randint(len(self._terms) + 1)
-            term, places = self._terms[which] if which < len(self._terms) else (None, np.arange(len(self._shared)))
+            term, places = (
+                self._terms[which] if which < len(self._terms) else (None, np.arange(len(self._shared)))
+            )
             self._move_shared(walkers, still, places, term, model)
 
     def _move_shared(
@@ -257,7 +261,12 @@ class _Walkers:
         self.theta, self.prior = target.shared_parameters(x[:, shared])
 
     def take(
-        self, taken: NDArray[np.bool_], places: NDArray[np.intp], moved: FloatArray, theta: FloatArray, prior: FloatArray
+        self,
+        taken: NDArray[np.bool_],
+        places: NDArray[np.intp],
+        moved: FloatArray,
+        theta: FloatArray,
+        prior: FloatArray,
     ) -> None:
         """Set some of what is shared of those that accept a move."""
         chosen = np.ix_(taken, places)
