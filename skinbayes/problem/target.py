@@ -240,7 +240,7 @@ class PosteriorTarget:
         if usable.sum() < count:
             raise InputError(
                 f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density, "
-                f"where {count} are needed to start from; narrow the priors to values at which the forward model gives a prediction"
+                f"where {count} are needed to start from; narrow the priors to values at which there is a prediction"
             )
         return position[usable][:count], len(theta)
 

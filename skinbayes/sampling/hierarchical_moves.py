@@ -26,6 +26,9 @@ REPEATS = 2
 FROM_PRIOR, WHOLE_STEP = 0.1, 0.1
 """Fractions of the moves of people that are drawn from the population, and of differences that are taken whole, not scaled."""
 
+TOGETHER = 0.5
+"""Fraction of the sweeps in which all that people share is moved together."""
+
 JITTER = 1e-5
 """Added to differences, as a fraction of the spread of the walkers."""
 
@@ -206,16 +209,13 @@ class HierarchicalMove:
         return new, np.where(np.isfinite(gain), gain, -np.inf)
 
     def _move_all_shared(self, walkers: _Walkers, still: FloatArray, model: Any) -> None:
-        """What no population has; then everything that is shared, or the location and scale of one population, some times."""
-        random = model.random
+        """What no population has; location and scale of each population; now and then everything that is shared."""
         if len(self._others):
             self._move_shared(walkers, still, self._others, None, model)
-        for _ in range(1 + len(self._terms) // 2 if self._terms else 0):
-            which = random.randint(len(self._terms) + 1)
-            term, places = (
-                self._terms[which] if which < len(self._terms) else (None, np.arange(len(self._shared)))
-            )
+        for term, places in self._terms:
             self._move_shared(walkers, still, places, term, model)
+        if len(self._shared) and model.random.random_sample() < TOGETHER:
+            self._move_shared(walkers, still, np.arange(len(self._shared)), None, model)
 
     def _move_shared(
         self, walkers: _Walkers, still: FloatArray, places: NDArray[np.intp], term: Term | None, model: Any

@@ -48,7 +48,10 @@ def test_intervals_of_populations_cover() -> None:
 
 @pytest.mark.slow
 def test_a_treatment_without_effect_is_found_at_its_nominal_rate() -> None:
-    """A probability of 95 % or more, to either side, comes up in at most 10 % of panels without effect: by chance beyond in 1/1,000."""
+    """A probability of 95 % or more, to either side, comes up in at most 10 % of panels without effect.
+
+    By chance beyond the bound in one of a thousand cases.
+    """
     found = 0
     for seed in range(PANELS):
         draws, _ = shared_draws(1000 + seed, effect=0.0)

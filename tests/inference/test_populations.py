@@ -115,7 +115,7 @@ def test_moves_keep_the_density_that_they_report() -> None:
 
 
 def test_people_have_the_values_that_their_terms_make() -> None:
-    """Nested places within people: ln of a value is the sum of its terms; rows of a batch and single ones agree to the last bit."""
+    """Nested places within people: ln of a value is the sum of its terms; a batch and single vectors agree to the last bit."""
     people, places = np.array(["A", "A", "A", "B", "B", "B"]), np.array(["l", "r", "l", "l", "r", "r"])
     problem = constant_problem(
         people, np.full(6, 0.5), POPULATION | {"within": {"column": "side", "scale": 0.2}}, side=places
@@ -179,7 +179,7 @@ def test_bounded_parameters_stay_in_their_range() -> None:
     )  # fmt: skip
     theta = problem.draw_prior(np.random.default_rng(1), 500)
     values = problem.inputs(theta)["poisson_ratio"]
-    assert -1.0 < values.min() and values.max() < 0.5
+    assert values.min() > -1.0 and values.max() < 0.5
     fit = sb.Fit.from_draws(problem, theta)
     (row,) = fit.contrasts().to_dict("records")
     assert (row["kind"], row["unit"], row["compared"]) == ("difference", "1", "after/before")
