@@ -169,9 +169,12 @@ def _prepare(problem: Problem, measured: Problem, progress: Progress | None, cor
 def _reaches(measured: Problem, problem: Problem) -> bool:
     """Whether the inputs of measured rows reach as far as those of others."""
     here, there = problem.ranges(), measured.ranges()
+    # new people are of the same population, for which the table was made
+    drawn = {spec.name for spec in measured.spec.populations}
     return here.multiples == there.multiples and all(
         name in there and there[name][0] <= low and high <= there[name][1]
         for name, (low, high) in here.items()
+        if name not in drawn
     )
 
 

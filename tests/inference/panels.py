@@ -7,6 +7,11 @@ from typing import Any
 import numpy as np
 
 from skinbayes.problem import Problem, build_problem
+from skinbayes.problem.target import PosteriorTarget
+from skinbayes.sampling.advance import advance
+from skinbayes.sampling.hierarchical_moves import HierarchicalMoves
+from skinbayes.sampling.options import SamplerOptions
+from skinbayes.sampling.starts import initial_states
 
 LEVEL = "typical_friction_coefficient"
 SCALE, CONTRAST = f"population_scale[{LEVEL}]", f"contrast[{LEVEL}, after]"
@@ -61,6 +66,13 @@ def treated(
         treatment=np.where(after, "after", "before"),
     )
     return problem, np.array([median, scale, contrast, spread])
+
+
+def one_ensemble(target: PosteriorTarget, seed: int, steps: int, walkers: int = 64) -> np.ndarray:
+    """Parameters of one ensemble after a quarter of its steps, in SI, shape ``(draws, D)``: later steps last."""
+    state = initial_states(target, SamplerOptions(seed=seed, ensembles=2, walkers=walkers))[0]
+    positions = advance(target, state, steps, HierarchicalMoves(target)).positions[steps // 4 :]
+    return target.transform.inverse(positions.reshape(-1, positions.shape[-1]))
 
 
 CURVE = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from panels import CONTRAST, CURVE, LEVEL, curves, treated
+from panels import CONTRAST, CURVE, LEVEL, curves, one_ensemble, treated
 from scipy import stats
 
 from skinbayes.sampling.ensembles import run_ensembles
@@ -16,12 +16,7 @@ PANELS = 60
 def shared_draws(seed: int, effect: float | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Draws of median, scale, contrast and spread of the contrast of one panel, in SI, and the truth."""
     problem, truth = treated(np.random.default_rng([seed, 31]), effect=effect)
-    target = problem.target()
-    options = SamplerOptions(
-        seed=seed, ensembles=2, walkers=32, max_steps=200, block_steps=200, steps_over_tau=1.0, ess=1.0
-    )
-    positions = run_ensembles(target, options).positions[:, 60:]
-    return target.transform.inverse(positions.reshape(-1, positions.shape[-1]))[:, : len(truth)], truth
+    return one_ensemble(problem.target(), seed, 200)[:, : len(truth)], truth
 
 
 def test_the_first_parameters_are_those_of_the_truth() -> None:

@@ -16,6 +16,7 @@ from panels import (
     SCALE,
     constant_problem,
     curves,
+    one_ensemble,
     treated,
 )
 from scipy import stats
@@ -25,25 +26,9 @@ from skinbayes.errors import InputError
 from skinbayes.problem import Problem
 from skinbayes.problem.target import PosteriorTarget
 from skinbayes.sampling.advance import advance
-from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.hierarchical_moves import HierarchicalMoves
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.starts import initial_states
-
-
-def draws(target: PosteriorTarget, seed: int, steps: int, walkers: int = 64) -> np.ndarray:
-    """Parameters of two ensembles after a quarter of their steps, in SI."""
-    options = SamplerOptions(
-        seed=seed,
-        ensembles=2,
-        walkers=walkers,
-        max_steps=steps,
-        block_steps=steps,
-        steps_over_tau=1.0,
-        ess=1.0,
-    )
-    positions = run_ensembles(target, options).positions[:, steps // 4 :]
-    return target.transform.inverse(positions.reshape(-1, positions.shape[-1]))
 
 
 def six_people() -> tuple[Problem, np.ndarray]:
@@ -58,10 +43,10 @@ def test_normal_population_of_normal_people_against_quadrature() -> None:
     """Location, scale and each person where means of known error come from a normal population.
 
     The quadrature integrates the people out in closed form. Tolerances are four standard errors with 300 independent draws;
-    the autocorrelation time of these 2 · 64 · 187 draws is below 20 steps.
+    these are 188 steps of 64 walkers, whose autocorrelation time is below 20.
     """
     problem, means = six_people()
-    found = draws(problem.target(), 5, 250)
+    found = one_ensemble(problem.target(), 5, 250)
     location, scale = np.meshgrid(np.linspace(-2.5, 0.5, 401), np.linspace(1e-3, 2.5, 500), indexing="ij")
     variance = scale**2 + NOISE**2 / 3
     log_density = stats.norm.logpdf(location, np.log(0.5), 1.0) + stats.halfnorm.logpdf(scale, scale=0.5)
@@ -87,9 +72,9 @@ def test_without_a_likelihood_the_priors_come_back() -> None:
     """
     problem, _ = treated(np.random.default_rng(2), people=5, repeats=1)
     target = PosteriorTarget(problem, use_likelihood=False)
-    found = draws(target, 7, 400)
+    found = one_ensemble(target, 7, 400)
     assert target.hierarchy is not None
-    apart = found.reshape(2, 300, 64, -1)[:, ::40].reshape(-1, problem.dimension)
+    apart = found.reshape(300, 64, -1)[::40].reshape(-1, problem.dimension)
     exact = {
         LEVEL: stats.lognorm(0.5, scale=0.5),
         SCALE: stats.halfnorm(scale=0.4),
