@@ -29,6 +29,9 @@ FROM_PRIOR, WHOLE_STEP = 0.1, 0.1
 TOGETHER = 0.5
 """Fraction of the sweeps in which all that people share is moved together."""
 
+LOG_SIZES = np.log([0.1, 1.2])
+"""Range of ln of the factor on the usual size of a difference: what is moved is often known better given all else."""
+
 JITTER = 1e-5
 """Added to differences, as a fraction of the spread of the walkers."""
 
@@ -213,7 +216,11 @@ class HierarchicalMove:
         if len(self._others):
             self._move_shared(walkers, still, self._others, None, model)
         for term, places in self._terms:
-            self._move_shared(walkers, still, places, term, model)
+            # location and scale together, or one of them: where another parameter holds the one, the other still moves
+            which = model.random.randint(3)
+            chosen = places[which - 1 : which] if which else places
+            if len(chosen):
+                self._move_shared(walkers, still, chosen, term, model)
         if len(self._shared) and model.random.random_sample() < TOGETHER:
             self._move_shared(walkers, still, np.arange(len(self._shared)), None, model)
 
@@ -282,7 +289,7 @@ def _pairs(random: Any, shape: tuple[int, ...], count: int) -> tuple[NDArray[np.
 
 def _sizes(random: Any, shape: tuple[int, ...], dimension: NDArray[np.intp]) -> FloatArray:
     """Factors on differences of ``dimension`` coordinates: small ones too, for walkers that have some way to go."""
-    size = 2.38 / np.sqrt(2.0 * dimension) * random.uniform(0.2, 1.2, size=shape)
+    size = 2.38 / np.sqrt(2.0 * dimension) * np.exp(random.uniform(*LOG_SIZES, size=shape))
     return np.where(random.random_sample(shape) < WHOLE_STEP, 1.0, size)
 
 
