@@ -92,7 +92,7 @@ def plot_people(fit: FitResult, width: str | None = None) -> Figure:
                 *(float(v) for v in scale.shown(np.array([everybody.min(), everybody.max()]))),
                 most=5,
             )
-            ax.set_yticks(range(len(people)), [figure_text(shortened(p.level, LONGEST)) for p in people])
+            ax.set_yticks(range(len(people)), [shortened(p.level, LONGEST).replace("$", r"\$") for p in people])
             ax.set_ylim(-0.7, len(people) - 0.3)
             symbol = figure_text(QUANTITIES[finding.parameter].symbol)
             ax.set_xlabel(scale.label(f"{spoken_name(finding.parameter)} {symbol}"))

@@ -209,7 +209,7 @@ def test_what_a_fit_says_of_people(fit: sb.Fit) -> None:
 def test_new_people_are_drawn_from_the_population(fit: sb.Fit) -> None:
     rows = {"person": ["P2", "new", "new", "another"], "normal_force [N]": [1.0, 1.0, 2.0, 1.0]}
     found = fit.predict(rows)
-    model, measured = found.of_model["friction_coefficient"], found.of_measurements["friction_coefficient"]
+    model, measured = found.of_model["friction_coefficient"], found.of_measurement["friction_coefficient"]
     assert_allclose(model[:, 0], fit.draws(f"person_{LEVEL}[P2]"), rtol=1e-12)
     assert_allclose(model[:, 1], fit.draws(LEVEL), rtol=1e-12)  # without scatter the median person
     logs = np.log(measured)
