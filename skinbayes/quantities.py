@@ -317,6 +317,18 @@ ALL = (
         "1",
         "standard deviation of effects that groups of data share, of ln if the noise is logarithmic",
     ),
+    # populations of people
+    _closed(
+        "population_scale",
+        "σ_p",
+        "1",
+        "standard deviation of a parameter between people, of its ln if it is positive",
+    ),
+    Quantity("population_deviate", "z_p", "1", "normal score of one person in the population", lower=-inf),
+    Quantity(
+        "contrast", "δ", "1", "what a treatment adds to a parameter, to its ln if it is positive", lower=-inf
+    ),
+    _closed("contrast_scale", "σ_δ", "1", "standard deviation of what a treatment adds, between people"),
     Quantity("covariate_exponent", "k", "1", "power with which a column of the data acts", lower=-inf),
     # what rows along a column share
     _closed(

@@ -97,6 +97,8 @@ def _show_model(name: str, as_json: bool) -> None:
         print_json({**about, **more, "parameters": parameters})
         return
     print_text(problem.spec.title, "", *_paragraphs(problem.spec.description), "")
+    from skinbayes.files.population_block import DEVIATE
+
     for experiment, (part, _) in problem.parts.items():
         if several:
             print_text(f"experiment:    {experiment}")
@@ -110,6 +112,7 @@ def _show_model(name: str, as_json: bool) -> None:
             p.source,
         )
         for p in problem.parameters
+        if p.name != DEVIATE
     ]
     print_table(("parameter", "prior or value", "source"), rows)
 
@@ -144,6 +147,8 @@ def _print_experiment(problem: BoundModel) -> None:
         print_text(f"flow curves:   {spec.rheology}, by {spec.rheology_by}")
     if words := surface_words(problem, problem.prior_medians()):
         print_text(f"surface:       {words}.")
+    for one in spec.populations:
+        print_text(f"population:    {one.name}, by {', '.join(one.columns)}")
     for covariate in spec.covariates:
         print_text(f"covariate:     {covariate.column} acts on {covariate.acts_on} as a power")
 

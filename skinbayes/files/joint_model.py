@@ -14,6 +14,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.modelfile import ModelSpec, check_printable, find_model, read_block, read_parameters
 from skinbayes.files.modelschema import ExperimentBlock, JointBlock, ModelBlock
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.population_block import read_populations
 from skinbayes.files.stated_surface import StatedSurface, stated_about
 from skinbayes.files.toml_text import Places, explain, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
@@ -109,6 +110,11 @@ def _read(block: JointBlock, path: Path, text: str, where: Places) -> JointSpec:
             "with a letter"
         )
     surface = block.surface
+    if populations := read_populations(block.parameters, where):
+        raise InputError(
+            f"{where('parameters', populations[0].name, 'population')}: populations are for models of one experiment; give "
+            "one value for all, or one for each level"
+        )
     parameters = read_parameters(block.parameters, where)
     for p in parameters:
         if p.by == EXPERIMENT and p.level not in names:

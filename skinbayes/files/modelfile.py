@@ -18,6 +18,12 @@ from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.modelschema import DataBlock, DerivedBlock, GridBlock, ModelBlock, RheologyBlock
 from skinbayes.files.noise_block import noise_parameter_names, read_noise
 from skinbayes.files.parameter_block import ParameterSpec, label_column, parse_levels, parse_value
+from skinbayes.files.population_block import (
+    POPULATION_PARAMETERS,
+    PopulationSpec,
+    location_entry,
+    read_populations,
+)
 from skinbayes.files.scatter_block import (
     SCATTER_PARAMETERS,
     CorrelationSpec,
@@ -49,7 +55,8 @@ class ModelSpec:
     surface_name, surface_file : named surface or tabulated spectrum
     surface_stated : what is said about the spectrum
     surface_posterior : run, or CSV, whose draws say what is known of the surface
-    parameters : parameters of the forward model, fixed and free
+    parameters : parameters of the forward model, fixed and free; of one with a population its median
+    populations : parameters that differ from level to level of a label column as a population does
     noise : observable to the name of its noise family
     noise_parameters : parameters of noise and discrepancy
     groups : scales of group effects, ``group_scale[person]``
@@ -86,6 +93,7 @@ class ModelSpec:
     correlation: CorrelationSpec | None = None
     covariates: tuple[CovariateSpec, ...] = ()
     covariate_exponents: tuple[ParameterSpec, ...] = ()
+    populations: tuple[PopulationSpec, ...] = ()
     rheology: str | None = None
     rheology_by: str | None = None
     derived: dict[str, DerivedBlock] = field(default_factory=dict)
@@ -213,6 +221,7 @@ def read_block(block: ModelBlock, path: Path, text: str, where: Callable[..., st
         discrepancy=read_discrepancy(block.discrepancy, families, where),
         covariates=covariates,
         covariate_exponents=exponents,
+        populations=read_populations(block.parameters, where),
         rheology=resolved(rheology),
         rheology_by=None if rheology is None else rheology.by,
         derived=block.derived,
@@ -263,6 +272,8 @@ def _parameter_quantity(name: str, where: str) -> Quantity:
         raise InputError(f"{where}: '{name}' belongs into [noise]")
     if name in SCATTER_PARAMETERS:
         raise InputError(f"{where}: '{name}' belongs into [groups], [discrepancy] or [noise.correlation]")
+    if name in POPULATION_PARAMETERS:
+        raise InputError(f"{where}: '{name}' belongs into the 'population' of a parameter")
     if name not in QUANTITIES:
         raise InputError(
             f"{where}: unknown parameter '{shortened(name)}'.{suggestions(name, list(QUANTITIES))}"
@@ -279,7 +290,7 @@ def read_parameters(block: dict[str, Any], where: Callable[..., str]) -> tuple[P
         def place(*keys: str, name: str = name) -> str:
             return str(where("parameters", name, *keys))
 
-        specs += parse_levels(quantity, entry, place, may_be_tied=True)
+        specs += parse_levels(quantity, location_entry(entry), place, may_be_tied=True)
     return tuple(specs)
 
 

@@ -81,6 +81,8 @@ def written_parameter(entry: Any, unit: str, where: str) -> Any:
             found[key] = value
         elif key == "fixed":
             found[key] = written_value(value, unit, place)
+        elif key == "population" and isinstance(value, Mapping):
+            found[key] = _written_population(value, unit, place)
         elif key in FAMILIES:
             found[key] = _written_arguments(key, value, unit, place)
         else:  # a level
@@ -99,3 +101,22 @@ def _written_arguments(family: str, raw: Any, unit: str, where: str) -> Any:
         for argument, kind in zip(arguments, kinds, strict=True)
     ]
     return found if several else found[0]
+
+
+def _written_population(block: Mapping[str, Any], unit: str, where: str) -> dict[str, Any]:
+    """``population`` of a parameter: its scales and effects are numbers unless they are given as text."""
+    found: dict[str, Any] = {}
+    for key, value in block.items():
+        place = f"{where}.{key}"
+        if key in ("within", "contrast") and isinstance(value, Mapping):
+            found[key] = {
+                name: written_parameter(entry, "1", f"{place}.{name}")
+                if name in ("scale", "effect")
+                else entry
+                for name, entry in value.items()
+            }
+        elif key == "scale":
+            found[key] = written_parameter(value, "1", place)
+        else:
+            found |= written_parameter({key: value}, unit, where)
+    return found

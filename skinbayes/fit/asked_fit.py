@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from skinbayes.fit.result import FitResult
 
 if TYPE_CHECKING:
+    import pandas
+
     from skinbayes.files.surface_draws import SurfaceDraws
     from skinbayes.fit.prior_sensitivity import PriorSensitivity
     from skinbayes.fit.surface_variance import SurfaceVariance
@@ -107,6 +109,44 @@ class AskedFit(FitResult):
         if refit not in self._sensitivities:
             self._sensitivities[refit] = prior_sensitivity(self, refit, progress)
         return self._sensitivities[refit]
+
+    def people(self) -> pandas.DataFrame:
+        """Each person's value of each parameter that has a population.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each parameter and level, nested ones too: ``parameter``, ``level``, ``unit``, the quantiles ``q05``,
+            ``median`` and ``q95`` (SI), and ``shrinkage``: how much of what is said is that of the population, 1 without data.
+            Without rows if no parameter has a population.
+
+        Examples
+        --------
+        >>> list(fit.people().columns)
+        ['parameter', 'level', 'unit', 'q05', 'median', 'q95', 'shrinkage']
+        """
+        from skinbayes.fit.people import people_table
+
+        return people_table(self)
+
+    def contrasts(self) -> pandas.DataFrame:
+        """What treatments do to parameters that have a population.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for the median of the population (``who`` is empty) and one for each person: ``parameter``, ``compared``, such
+            as ``"after/before"``, ``who``, ``kind`` (``"ratio"`` of what is positive, else ``"difference"``), ``unit``, the
+            quantiles ``q05``, ``median``, ``q95`` (SI) and ``probability_lower``, that the treatment lowers the parameter.
+
+        Examples
+        --------
+        >>> len(fit.contrasts())
+        0
+        """
+        from skinbayes.fit.people import contrast_table
+
+        return contrast_table(self)
 
     def surface(self) -> SurfaceDraws:
         """What this fit knows of the roughness, for another problem: ``build_problem(…, surface=fit.surface())``.

@@ -277,6 +277,34 @@ class DrawnFit(AskedFit):
 
         return plot_effects(self, width=width)
 
+    def plot_people(self, width: str | None = None) -> Figure:
+        """Each person's value of each parameter that has a population.
+
+        See :func:`skinbayes.plot.plot_people` for what is drawn.
+
+        Parameters
+        ----------
+        width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Of no window; ``savefig`` writes it.
+
+        Raises
+        ------
+        InputError
+            A width that no page has.
+
+        Examples
+        --------
+        >>> print(fit.plot_people().get_suptitle().removeprefix("NOT CONVERGED – "))
+        People one by one
+        """
+        from skinbayes.plot import plot_people
+
+        return plot_people(self, width=width)
+
     def plot_residuals(self, width: str | None = None) -> Figure:
         """What is left between data and model, against the abscissa and the conditions.
 

@@ -51,6 +51,11 @@ class NewMeasurements:
     def of(cls, new: NewConditions, theta: FloatArray, rng: np.random.Generator) -> NewMeasurements:
         """Draw measurements at the rows of ``new`` for each of the draws ``theta``."""
         names = new.measured.observables
+        if new.people:
+            raise InputError(
+                f"{new.dataset.path}: rows of {' and '.join(new.new_people)} that were not measured, whose values are not "
+                "known; the information of rows is computed for those that the fit has seen"
+            )
         if new.measured.shared is not None:
             theta = theta[: max(200, MOST_NUMBERS // new.measured.shared.n_effects**2)]
         found = new.problem.predict(theta)

@@ -239,7 +239,7 @@ def predicted(
     most = max(FEWEST_DRAWS, MOST_NUMBERS // new.problem.conditions.n_rows)
     theta = theta[:: -(-len(theta) // most)]
     rng = np.random.default_rng([seed])
-    predictions = new.problem.predict(theta)
+    predictions = new.problem.predict(new.of_people(theta))
     made = drawn_measurements(new, theta, predictions, rng)
     of_model = {name: predictions[name] for name in measured.observables}
     if made.effects is not None and made.problem.shared is not None:
@@ -251,7 +251,7 @@ def predicted(
         new.dataset.columns,
         of_model,
         made.values,
-        (*_about_levels(new), *new.notes, *new.problem.explain(np.median(theta, axis=0))),
+        (*_about_levels(new), *new.notes, *new.problem.explain(np.median(new.of_people(theta), axis=0))),
     )
 
 
@@ -294,12 +294,16 @@ def drawn_measurements(
     problem = replace(new.problem, observations=observed, input_spread=spread)
     problem.__dict__["model"] = new.problem.model
     effects = None
+    of_people = new.of_people(theta, rng)
+    if new.people:  # others are as the median in predictions of the model, not in measurements
+        found = problem.predict(of_people)
+        predictions = {name: found[name] for name in predictions}
     if problem.shared is not None:
         known = new.measured.draw_effects(theta, rng)[:, new.known]  # that of a new level is replaced
-        anew = problem.shared.draw_new_effects(rng, problem.likelihood.scales(theta))
+        anew = problem.shared.draw_new_effects(rng, problem.likelihood.scales(of_people))
         effects = np.where(new.known < 0, anew, known)
     stacked = np.stack([predictions[o.name] for o in observed], axis=1)
-    drawn = problem.likelihood.draw_about(theta, stacked, rng, effects)
+    drawn = problem.likelihood.draw_about(of_people, stacked, rng, effects)
     parts = np.split(drawn, len(observed), axis=-1)
     return DrawnMeasurements(
         problem, effects, {o.name: part for o, part in zip(observed, parts, strict=True)}
@@ -321,7 +325,7 @@ def _as_measured(old: Observation, predictions: FloatArray) -> Observation:
 
 def _about_levels(new: NewConditions) -> list[str]:
     said = []
-    for column, levels in new.new_levels.items():
+    for column, levels in (new.new_levels | new.new_people).items():
         named = [level for level in levels if level]
         who = (
             f"{column} {', '.join(named[:5])}{' and others' if len(named) > 5 else ''}"

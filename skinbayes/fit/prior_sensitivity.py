@@ -11,6 +11,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.diagnose import PriorUpdate, prior_updates
+from skinbayes.files.population_block import DEVIATE
 from skinbayes.fit.arviz_adapter import power_scaling
 from skinbayes.fit.other_priors import OtherPriors, UnderOtherPriors
 from skinbayes.fit.result import FitResult, JointResult
@@ -241,9 +242,10 @@ def prior_sensitivity(
 ) -> PriorSensitivity:
     """Find out what a fit owes to its priors, see :meth:`skinbayes.Fit.prior_sensitivity`."""
     other = OtherPriors(fit, refit)
-    groups: list[tuple[str, ...]] = [(name,) for name in other.names]
+    # that people are drawn from a population is the model, not a prior that could be wider
+    groups: list[tuple[str, ...]] = [(name,) for name in fit.shown_names]
     if len(groups) > 1:
-        groups.append(other.names)
+        groups.append(fit.shown_names)
     wanted = [(labels, factor) for labels in groups for factor in FACTORS]
     changed = []
     for done, (labels, factor) in enumerate(wanted):
@@ -264,7 +266,7 @@ def _changed(
     other: OtherPriors, labels: tuple[str, ...], factor: float, found: UnderOtherPriors
 ) -> ChangedPrior:
     shifts, widths = {}, {}
-    for label in other.names if found.reliable else ():
+    for label in (n for n in other.names if n.partition("[")[0] != DEVIATE) if found.reliable else ():
         (before, _), (after, errors) = (other.quantiles(x, label, PROBABILITIES) for x in (None, found))
         spread, width = (before[3] - before[1]) / 2, before[4] - before[0]
         shifts[label] = float((after[2] - before[2]) / spread), float(errors[2] / spread)
@@ -286,6 +288,7 @@ def _informed(fit: FitResult | JointResult, other: OtherPriors) -> tuple[Informe
     return tuple(
         Informed(update.name, float(prior), float(likelihood), _speaks(prior, likelihood, update))
         for update, prior, likelihood in zip(updates, found["prior"], found["likelihood"], strict=True)
+        if update.name in fit.shown_names
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
+from skinbayes.files.population_block import DEVIATE
 
 if TYPE_CHECKING:
     import pandas
@@ -59,6 +60,32 @@ class PosteriorResult:
     def names(self) -> tuple[str, ...]:
         """Labels of the free parameters: ``name`` or ``name[level]``."""
         return tuple(self.provenance["names"])
+
+    @property
+    def shown_names(self) -> tuple[str, ...]:
+        """Labels of the free parameters without the normal scores of single people, whose values :meth:`people_labels` names."""
+        return tuple(label for label in self.names if label.partition("[")[0] != DEVIATE)
+
+    def people_labels(self) -> tuple[str, ...]:
+        """What is known of each person of a population, and of what treatments do.
+
+        Returns
+        -------
+        tuple of str
+            Such as ``person_young_modulus_layer[ID01]`` and ``young_modulus_layer_ratio[after/before]``; empty if no parameter
+            has a population.
+
+        Examples
+        --------
+        >>> fit.people_labels()
+        ()
+        """
+        return tuple(
+            f"{name}[{level}]"
+            for name, variable in self.groups["posterior"].data_vars.items()
+            if variable.attrs.get("kind") == "person"
+            for level in variable[variable.dims[-1]].values
+        )
 
     def draws(self, label: str, group: str = "posterior") -> FloatArray:
         """All draws of one parameter or derived quantity.
@@ -169,7 +196,7 @@ class PosteriorResult:
 
         Parameters
         ----------
-        derived : also list derived quantities (they have no effective sample size of their own)
+        derived : also list derived quantities, and what is known of each person (without an effective sample size of their own)
 
         Returns
         -------
@@ -187,7 +214,8 @@ class PosteriorResult:
 
         rows: dict[str, dict[str, Any]] = {}
         sampling = self.provenance["sampling"]
-        for label in (*self.names, *(self.derived_labels() if derived else ())):
+        also = (*self.people_labels(), *self.derived_labels()) if derived else ()
+        for label in (*self.shown_names, *also):
             q05, median, q95 = self.quantiles(label)
             prior05, prior50, prior95 = self.quantiles(label, group="prior")
             place = self.names.index(label) if label in self.names else None

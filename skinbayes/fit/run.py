@@ -94,6 +94,7 @@ def sample(
     (True, 4)
     """
     from skinbayes.sampling.engines import ENGINES, find_engine, options_for, register_engine
+    from skinbayes.sampling.target import moved_together
 
     require_data(problem)
     if isinstance(engine, str) and engine not in ENGINES:
@@ -104,7 +105,7 @@ def sample(
     settings = options_for(
         name, chosen, **{"seed": seed, "ess": ess, "cores": cores, "expensive": problem.expensive, **options}
     )
-    settings.check(problem.dimension)  # before anything is written
+    settings.check(moved_together(problem.target()))  # before anything is written
 
     def fitted(run: RunDirectory | None) -> Fit | JointFit:
         started, processor = time.perf_counter(), time.process_time()

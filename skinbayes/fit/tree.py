@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
     from skinbayes.files.parameter_block import ParameterSpec
     from skinbayes.problem import Problem
+    from skinbayes.problem.populations import Named
     from skinbayes.problem.shared_scatter import SharedScatter
+
+PERSON = "person"
+"""Kind of what belongs to the levels of a population, and of what treatments do to it."""
 
 CHUNK = 500
 """Parameter vectors predicted at a time."""
@@ -232,7 +236,15 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
             name, dimension = f"{column}_effect", f"{column}_level"
             coordinates[dimension] = list(members)
             variables[name] = (("chain", "draw", dimension), effects[..., groups.effects_of(column)])
+    people: list[Named] = []
+    if problem.populations is not None:
+        people = problem.populations.people(draws.reshape(-1, draws.shape[-1]), problem.conditions)
+    for one in people:
+        coordinates[f"{one.name}_level"] = list(one.levels)
+        values = np.broadcast_to(one.values, (draws.shape[0] * draws.shape[1], len(one.levels)))
+        variables[one.name] = (("chain", "draw", f"{one.name}_level"), values.reshape(*draws.shape[:2], -1))
     dataset = dataset_of(variables, draws, coordinates)
+    units = {one.name: one.unit for one in people}
     for key, variable in dataset.data_vars.items():
         own = next((p for p in problem.free if p.name == key), None)
         variable.attrs["kind"] = (
@@ -240,6 +252,8 @@ def _parameters(problem: Problem, draws: FloatArray, effects: FloatArray | None 
         )
         if own is not None:
             variable.attrs["units"] = own.unit
+        if key in units:
+            variable.attrs |= {"kind": PERSON, "units": units[str(key)]}
         block = problem.spec.derived.get(str(key))
         if block is not None:
             factors = [

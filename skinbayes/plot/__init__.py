@@ -5,6 +5,7 @@ from skinbayes.plot.data import plot_data
 from skinbayes.plot.discrepancy import plot_discrepancy
 from skinbayes.plot.effects import plot_effects, plot_residuals
 from skinbayes.plot.levels import plot_levels
+from skinbayes.plot.people import plot_people
 from skinbayes.plot.predictive import plot_predictive, plot_prior_predictive
 from skinbayes.plot.prior_posterior import plot_prior_posterior
 from skinbayes.plot.profile import plot_profile
@@ -16,6 +17,7 @@ __all__ = [
     "plot_discrepancy",
     "plot_effects",
     "plot_levels",
+    "plot_people",
     "plot_predictive",
     "plot_prior_posterior",
     "plot_prior_predictive",

@@ -54,8 +54,8 @@ def plot_corner(fit: FitResult, width: str | None = None) -> Figure:
         :meth:`Fit.summary`; where panels are too narrow for that, a list above them does. Parameters that do not vary are left
         out and named below.
     """
-    labels = [label for label in fit.names if _varies(fit.draws(label))]
-    constant = [fit.symbol(label) for label in fit.names if label not in labels]
+    labels = [label for label in fit.shown_names if _varies(fit.draws(label))]
+    constant = [fit.symbol(label) for label in fit.shown_names if label not in labels]
     if not labels:
         return sentence_figure(fit, TITLE, "No parameter varies: there is nothing to draw.", width)
     columns = [_column(fit, label) for label in labels]

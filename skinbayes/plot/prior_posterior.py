@@ -41,7 +41,7 @@ def plot_prior_posterior(fit: FitResult, width: str | None = None) -> Figure:
     matplotlib.figure.Figure
         One panel for each parameter; its title says whether the data updated it.
     """
-    names = fit.names
+    names = fit.shown_names
     updates = fit_updates(fit)
     columns = 1 if len(names) == 1 else 2
     rows = -(-len(names) // columns)

@@ -33,7 +33,7 @@ def plot_trace(fit: FitResult, width: str | None = None) -> Figure:
         One row for each parameter. Ensembles that sampled the same distribution fill the same band (dashed lines: 5 %,
         50 % and 95 % of all draws) from the first draw to the last.
     """
-    names = fit.names
+    names = fit.shown_names
     chains, length = (fit.groups["posterior"].sizes[d] for d in ("chain", "draw"))
     step = max(1, length // POINTS)
     shown = len(range(0, length, step))

@@ -29,4 +29,5 @@ def fit_updates(fit: FitResult) -> dict[str, PriorUpdate]:
         transform = VectorTransform.for_supports(
             [(0.0, np.inf) if is_positive else (-np.inf, np.inf) for is_positive in positive]
         )
-    return {update.name: update for update in prior_updates(fit.names, before, after, transform)}
+    found = prior_updates(fit.names, before, after, transform)
+    return {update.name: update for update in found if update.name in fit.shown_names}

@@ -14,11 +14,18 @@ from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.files.surface_draws import SurfaceDraws
 from skinbayes.forward import FlowCurve, ForwardModel, Tables, forward_model
-from skinbayes.problem.consistency import check_derived, check_names, check_required, check_scatter
+from skinbayes.problem.consistency import (
+    check_derived,
+    check_names,
+    check_populations,
+    check_required,
+    check_scatter,
+)
 from skinbayes.problem.covariates import check_covariates
 from skinbayes.problem.failures import explained
 from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.observations import Observation
+from skinbayes.problem.populations import Populations, population_parameters
 from skinbayes.problem.problem import Problem
 from skinbayes.problem.rheology import REPLACED, flow_curves_of, load_flow_curves
 from skinbayes.problem.rows import (
@@ -159,7 +166,10 @@ def _completed(
     inputs = resolve_ties([*parameters, *defaults], str(spec.path), rows.conditions.values)
     shared = scatter_parameters(spec, rows.conditions, rows.columns) if rows.observations else ()
     inputs += () if prior is None else prior.parameters
-    return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups, *shared)
+    check_populations(spec, inputs)
+    # without data nobody is known, and predictions are those of the median
+    people = population_parameters(spec.populations, rows.conditions, spec.path) if rows.observations else ()
+    return (*inputs, *spec.covariate_exponents, *spec.noise_parameters, *spec.groups, *shared, *people)
 
 
 def _problem(
@@ -177,11 +187,13 @@ def _problem(
     if rows.observations:
         groups = crossed_groups(spec, rows.conditions)
         shared = shared_scatter(spec, rows.conditions, rows.columns, groups, parameters)
+    free = tuple(p for p in parameters if p.prior is not None)
+    fixed = tuple(p for p in parameters if p.value is not None)
     problem = Problem(
         spec=spec,
         forward=forward,
-        free=tuple(p for p in parameters if p.prior is not None),
-        fixed=tuple(p for p in parameters if p.value is not None),
+        free=free,
+        fixed=fixed,
         tied=tuple(p for p in parameters if p.same_as is not None),
         conditions=rows.conditions,
         dataset=rows.dataset,
@@ -195,6 +207,9 @@ def _problem(
         settings=settings,
         correlated=shared,
         surface_prior=prior,
+        populations=Populations.of(spec.populations, free, fixed)
+        if spec.populations and rows.observations
+        else None,
     )
     try:
         _ = problem.plan

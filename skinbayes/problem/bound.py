@@ -14,6 +14,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.modelfile import ModelSpec
 from skinbayes.files.parameter_block import ParameterSpec
+from skinbayes.files.population_block import POPULATION, PopulationSpec
 from skinbayes.forward import FlowCurve, ForwardModel, Tables
 from skinbayes.forward.base import TiedRanges
 from skinbayes.problem.covariates import apply_covariates
@@ -21,6 +22,7 @@ from skinbayes.problem.deduplicated_rows import DistinctRows, distinct_rows
 from skinbayes.problem.failures import explained
 from skinbayes.problem.inputs import Conditions, InputPlan, plan_inputs
 from skinbayes.problem.observations import Observation
+from skinbayes.problem.populations import Part, Populations
 from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.shared_scatter import SharedScatter
@@ -52,6 +54,7 @@ class BoundModel(Posterior):
     settings : values set over the model file, as given
     tied : parameters that are multiples of free or fixed ones
     surface_prior : what draws of a surface say about its roughness, or None
+    populations : parameters that differ from person to person as a population does, or None
     correlated : group effects together with the discrepancy and correlated noise, or None if there is neither of these two
 
     Examples
@@ -80,6 +83,7 @@ class BoundModel(Posterior):
     tied: tuple[ParameterSpec, ...] = ()
     correlated: SharedScatter | None = None
     surface_prior: SurfacePrior | None = None
+    populations: Populations | None = None
 
     @property
     def name(self) -> str:
@@ -236,24 +240,60 @@ class BoundModel(Posterior):
         (1, 2)
         """
         rows = conditions or self.conditions
-        plan = self.plan if conditions is None else plan_inputs(self.fixed, self.free, rows, self.tied)
+        plan = self.plan if conditions is None else self.planned(rows)
         same, varying = self._parted if conditions is None else _parted(plan, rows)
         values = same | {entry.name: entry.values(theta) for entry in varying}
         if self.surface_prior is not None:
             values |= self.surface_prior.inputs(values)
+        if self.populations is not None:
+            at = self._population_rows if conditions is None else self.populations.at(rows)
+            values |= self.populations.inputs(theta, values, at)
         return apply_covariates(self.spec.covariates, rows.covariates, values, self.spec.observables)
 
     @cached_property
     def deduplicated(self) -> DistinctRows | None:
         """Rows of the data that the forward model need not tell apart; None if all differ."""
-        return distinct_rows(self.plan, self.conditions, self.tables, self.input_spread)
+        further = dict(self.input_spread)
+        if self.populations is not None:
+            further |= self.populations.levels_of_rows(self.conditions)
+        return distinct_rows(self.plan, self.conditions, self.tables, further)
 
     # -- inner parts -------------------------------------------------------------------------------------------------
 
     @cached_property
     def plan(self) -> tuple[InputPlan, ...]:
         """Where each input comes from."""
-        return plan_inputs(self.fixed, self.free, self.conditions, self.tied)
+        return self.planned(self.conditions)
+
+    def planned(self, conditions: Conditions) -> tuple[InputPlan, ...]:
+        """Where each input at some rows comes from; what only populations have is no input.
+
+        Parameters
+        ----------
+        conditions : the rows
+
+        Returns
+        -------
+        tuple of InputPlan
+            One for each input.
+
+        Raises
+        ------
+        InputError
+            A parameter differs by a column that the rows lack, or a row has a level without a value.
+
+        Examples
+        --------
+        >>> [entry.name for entry in problem.planned(problem.conditions)][:2]
+        ['frictional_shear_stress', 'young_modulus_layer']
+        """
+        plan = plan_inputs(self.fixed, self.free, conditions, self.tied)
+        added = {p.label for p in (*self.free, *self.fixed) if p.by == POPULATION}
+        return tuple(entry for entry in plan if entry.name not in added)
+
+    @cached_property
+    def _population_rows(self) -> list[tuple[PopulationSpec, list[Part]]]:
+        return [] if self.populations is None else self.populations.at(self.conditions)
 
     @cached_property
     def _parted(self) -> tuple[dict[str, FloatArray], list[InputPlan]]:

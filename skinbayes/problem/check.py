@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.diagnose.directions import INFORMED
 from skinbayes.diagnose.findings import Identifiability
 from skinbayes.diagnose.identifiability import identify
 from skinbayes.errors import InputError
 from skinbayes.files.noise_block import noise_parameter_names
+from skinbayes.files.population_block import DEVIATE, POPULATION_PARAMETERS
 from skinbayes.files.scatter_block import SCATTER_PARAMETERS
 from skinbayes.phrases import row_count
 from skinbayes.problem.failures import explained
@@ -136,13 +138,69 @@ def setup(problem: StatisticalModel) -> tuple[str, ...]:
     if problem.surface_prior is not None:
         said.append(problem.surface_prior.sentence())
     said += surface_sentence(problem, problem.prior_medians(), " at the prior medians" if free else "")
+    said += people_sentences(problem)
     return tuple(said)
+
+
+def people_sentences(problem: StatisticalModel) -> list[str]:
+    """Of how many people the data can tell each parameter that has a population, at the prior medians."""
+    found = problem.populations
+    if found is None:
+        return []
+    said, centre = [], problem.prior_medians()
+    step = 0.1
+    moved = np.tile(centre, (problem.dimension + 1, 1))
+    np.fill_diagonal(moved[1:], centre + step)
+    places = [i for i, p in enumerate(problem.free) if p.name == DEVIATE]
+    with np.errstate(all="ignore"):
+        positive = problem.predict_data(centre) > 0
+        at = scattered(problem, centre, np.asarray(positive))(moved[[0, *(1 + i for i in places)]])
+    size = np.linalg.norm((at[1:] - at[0]) / step, axis=1)
+    names = [problem.names[i] for i in places]
+    for spec, parts in found.at(problem.conditions):
+        for number, part in enumerate(parts):
+            told = [size[names.index(label)] for label in part.deviates]
+            if not told:
+                continue
+            known = sum(1.0 / np.sqrt(1.0 + s * s) < INFORMED for s in told)
+            what = (
+                f"of {len(told)} levels of {spec.by}"
+                if not number
+                else f"of {len(told)} levels of {spec.within} within {spec.by}"
+                if part.location is None
+                else f"and what {part.location.rpartition(', ')[2].removesuffix(']')} does to it, of {len(told)} levels of "
+                f"{spec.by}"
+            )
+            said.append(
+                f"{spec.name} has a population {what}. At the prior medians the data tell {known} of them apart from the "
+                f"others{'' if known == len(told) else '; of the rest the population speaks'}."
+            )
+        if (contrast := spec.contrast) is not None:
+            labels = problem.conditions.labels
+            seen = {
+                level: set(labels[contrast.column][labels[spec.by] == level].tolist())
+                for level in set(labels[spec.by])
+            }
+            both = sum(contrast.reference in one and len(one) > 1 for one in seen.values())
+            rests = "rests on these" if both else "is one between groups"
+            said.append(
+                f"{both} of {len(seen)} levels of {spec.by} were measured with and without the treatment '{contrast.column}', "
+                f"which acts on {spec.name}; the contrast {rests}."
+            )
+    if problem.shared is not None:
+        said.append(
+            "People are not independent of each other where effects, curves or noise are shared by rows: all parameters are then "
+            f"moved together, which takes far longer in {problem.dimension} dimensions than person by person."
+        )
+    return said
 
 
 def prior_sentences(problem: Posterior) -> tuple[str, ...]:
     """A sentence on each free parameter and each that is tied."""
     said = []
     for p in problem.free:
+        if p.name == DEVIATE:  # one for each person, all the same
+            continue
         interval = p.prior.interval(0.9) if p.prior else ()
         ends = " and ".join(format_quantity(end, p.unit, 3, p.prior_text) for end in interval)
         source = "" if p.source else " No source is given."
@@ -191,7 +249,7 @@ def predictions_over(
 
 def entering(problem: Posterior) -> list[int]:
     """Places of the free parameters that enter predictions, not scatter alone."""
-    scatter = (*noise_parameter_names(), *SCATTER_PARAMETERS)
+    scatter = (*noise_parameter_names(), *SCATTER_PARAMETERS, *POPULATION_PARAMETERS)
     return [i for i, parameter in enumerate(problem.free) if parameter.name not in scatter]
 
 

@@ -40,6 +40,17 @@ def check_names(
             )
 
 
+def check_populations(spec: ModelSpec, parameters: Sequence[ParameterSpec]) -> None:
+    """Refuse ties to a parameter that differs from person to person, whose value at a row is not that of the population."""
+    names = {population.name for population in spec.populations}
+    for p in parameters:
+        if p.same_as is not None and p.same_as.partition("[")[0] in names:
+            raise InputError(
+                f"{spec.path}: parameters.{p.label}.same_as: '{p.same_as}' has a population, which a tied parameter cannot "
+                "follow; expected a parameter without one"
+            )
+
+
 def check_required(
     spec: ModelSpec,
     forward: ForwardModel,

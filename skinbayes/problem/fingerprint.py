@@ -53,6 +53,9 @@ def digest_model(
 
     table = tables.spectrum
     tied = sorted((str(p.by), p.label, str(p.same_as), repr(p.times)) for p in parameters if p.same_as)
+    populations = [
+        [p.name, p.columns, None if p.contrast is None else p.contrast.reference] for p in spec.populations
+    ]
     return _digest(
         {
             "version": __version__,
@@ -63,6 +66,7 @@ def digest_model(
             "free": [(p.by, p.label, repr(p.prior)) for p in parameters if p.prior is not None],
             "fixed": sorted((str(p.by), p.label, repr(p.value)) for p in parameters if p.value is not None),
             **({"tied": tied} if tied else {}),
+            **({"populations": populations} if populations else {}),
             "conditions": [_arrays(conditions.values), _arrays(conditions.covariates)],
             "labels": _arrays(conditions.labels),
             "input_spread": _arrays(input_spread),

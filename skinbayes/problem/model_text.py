@@ -12,6 +12,7 @@ from skinbayes.errors import InputError
 from skinbayes.files.locate import shipped_folder, shipped_names
 from skinbayes.files.noise_block import noise_parameter_names
 from skinbayes.files.parameter_block import ParameterSpec, parse_parameter
+from skinbayes.files.population_block import PopulationSpec
 from skinbayes.files.scatter_block import CORRELATION_KEYS, SCATTER_PARAMETERS, DiscrepancySpec
 from skinbayes.files.spectrum import spectrum_text
 from skinbayes.files.stated_surface import stated_text
@@ -83,6 +84,11 @@ def model_content(problem: BoundModel, path: Path, files: dict[Path, str], stem:
     inputs = problem.forward.input_names()
     written = (p for p in problem.parameters if p.name in inputs and p.entry is not None)
     content["parameters"] = _by_level(spec.path, written)
+    for population in spec.populations:
+        if population.name in content["parameters"]:
+            content["parameters"][population.name] = _population(
+                problem, population, content["parameters"][population.name]
+            )
     if spec.noise:
         content["noise"] = _noise(problem)
     if spec.groups:
@@ -226,6 +232,27 @@ def _by_level(path: Path, parameters: Iterable[ParameterSpec]) -> dict[str, Any]
         else:
             found.setdefault(parameter.name, {"by": parameter.by})[parameter.level] = entry
     return found
+
+
+def _population(problem: BoundModel, one: PopulationSpec, median: dict[str, Any]) -> dict[str, Any]:
+    """``by`` and ``population`` of a parameter; replaced priors of its scales and effects are in it."""
+    here = {p.label: p for p in problem.parameters}
+
+    def entry(p: ParameterSpec) -> dict[str, Any]:
+        return _entry(problem.spec.path, here.get(p.label, p))
+
+    block = {**median, "scale": entry(one.scale)}
+    if one.within_scale is not None:
+        block["within"] = {"column": one.within, "scale": entry(one.within_scale)}
+    if one.contrast is not None:
+        contrast = one.contrast
+        block["contrast"] = {
+            "column": contrast.column,
+            "reference": contrast.reference,
+            "effect": entry(contrast.effect),
+        }
+        block["contrast"] |= {} if contrast.scale is None else {"scale": entry(contrast.scale)}
+    return {"by": one.by, "population": block}
 
 
 def _entry(path: Path, parameter: ParameterSpec) -> dict[str, Any]:

@@ -12,8 +12,10 @@ from skinbayes.emulation import Progress
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Data, Dataset, as_dataset
 from skinbayes.files.dataset_rows import place_of_row
+from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.files.scatter_block import ORDER
 from skinbayes.problem.inputs import Conditions
+from skinbayes.problem.populations import new_people
 from skinbayes.problem.problem import Problem
 from skinbayes.problem.rheology import flow_curves_of
 from skinbayes.problem.rows import given_rows
@@ -32,6 +34,7 @@ class NewConditions:
     measured : the problem with its data
     problem : the same at the new rows, its parameters in the order of the measured one; without observations
     dataset : the new rows as they were given
+    people : labels of the deviates of people who were not measured; the parameters of the problem end with them
     known : place among the effects of the measured rows that each effect of the new ones has, −1 for new levels, shape ``(K,)``
     notes : sentences on what is not carried over to new rows
     """
@@ -41,6 +44,29 @@ class NewConditions:
     dataset: Dataset
     known: NDArray[np.intp]
     notes: tuple[str, ...]
+    people: tuple[str, ...] = ()
+
+    def of_people(self, theta: FloatArray, rng: np.random.Generator | None = None) -> FloatArray:
+        """Parameters of the problem for those of the measured one: new people are drawn, or as the median without ``rng``."""
+        size = len(theta), len(self.people)
+        anew = np.zeros(size) if rng is None else rng.standard_normal(size)
+        return np.concatenate([theta, anew], axis=1)
+
+    @property
+    def new_people(self) -> dict[str, tuple[str, ...]]:
+        """Levels of populations that were not measured, by label column."""
+        found: dict[str, dict[str, None]] = {}
+        for spec in self.measured.spec.populations if self.people else ():
+            for column in (spec.by, spec.within):
+                before = self.measured.conditions.labels.get(column or "")
+                now = self.problem.conditions.labels.get(column or "", np.full(1, "", dtype=str))
+                new = [
+                    level
+                    for level in now.tolist()
+                    if before is not None and level not in set(before.tolist())
+                ]
+                found.setdefault(str(column), {}).update(dict.fromkeys(new))
+        return {column: tuple(levels) for column, levels in found.items() if levels}
 
     @property
     def new_levels(self) -> dict[str, tuple[str, ...]]:
@@ -78,7 +104,9 @@ def at_new_conditions(
             f"{dataset.path}: no column '{lacking[0]} [..]', which the data of '{measured.name}' have; expected it in rows to "
             "predict too"
         )
-    inferred = {p.name for p in (*measured.free, *measured.tied)}
+    inferred = {p.name for p in (*measured.free, *measured.tied)} | {
+        p.name for p in measured.spec.populations
+    }
     if given := sorted(inferred & set(rows.values)):
         raise InputError(
             f"{dataset.path}: column '{given[0]}' is a parameter of '{measured.name}' that was inferred; drop the column"
@@ -88,8 +116,16 @@ def at_new_conditions(
         flow_curves=flow_curves_of(measured.flow_curves, measured.spec.rheology_by, rows, dataset.path),
     )
     groups, shared, known, notes = _shared(measured, rows, dataset)
+    people: tuple[ParameterSpec, ...] = ()
+    populations = measured.populations
+    if populations is not None:
+        _check_treatments(measured, rows, dataset)
+        people = new_people(populations, rows)
+        populations = replace(populations, free=(*populations.free, *(p.label for p in people)))
     problem = replace(
         measured,
+        free=(*measured.free, *people),
+        populations=populations,
         fixed=tuple(p for p in measured.fixed if p.name not in rows.values),
         conditions=rows,
         dataset=None,
@@ -104,7 +140,20 @@ def at_new_conditions(
     except InputError as error:
         raise InputError(f"{dataset.path}: {error}") from None
     _prepare(problem, measured, progress, cores)
-    return NewConditions(measured, problem, dataset, known, notes)
+    return NewConditions(measured, problem, dataset, known, notes, tuple(p.label for p in people))
+
+
+def _check_treatments(measured: Problem, rows: Conditions, dataset: Dataset) -> None:
+    """Refuse treatments that were not measured: nothing is known of what they do."""
+    for spec in measured.spec.populations:
+        column = None if spec.contrast is None else spec.contrast.column
+        seen = set(measured.conditions.labels[column].tolist()) if column else set()
+        given = rows.labels.get(column, np.zeros(0, dtype=str)).tolist() if column else []
+        if unknown := sorted(set(given) - seen):
+            raise InputError(
+                f"{dataset.path}: {column} '{unknown[0]:.60}' was not measured, and acts on {spec.name}; expected "
+                f"{' or '.join(sorted(seen))}"
+            )
 
 
 def _prepare(problem: Problem, measured: Problem, progress: Progress | None, cores: int) -> None:
@@ -120,9 +169,12 @@ def _prepare(problem: Problem, measured: Problem, progress: Progress | None, cor
 def _reaches(measured: Problem, problem: Problem) -> bool:
     """Whether the inputs of measured rows reach as far as those of others."""
     here, there = problem.ranges(), measured.ranges()
+    # new people are of the same population, for which the table was made
+    drawn = {spec.name for spec in measured.spec.populations}
     return here.multiples == there.multiples and all(
         name in there and there[name][0] <= low and high <= there[name][1]
         for name, (low, high) in here.items()
+        if name not in drawn
     )
 
 

@@ -15,7 +15,7 @@ from skinbayes.problem.bound import BoundModel
 from skinbayes.problem.covariates import factor_key
 from skinbayes.problem.deduplicated_rows import DistinctRows, distinct_rows
 from skinbayes.problem.failures import FAILED, explained, without_underflow
-from skinbayes.problem.inputs import Conditions, plan_inputs
+from skinbayes.problem.inputs import Conditions
 from skinbayes.problem.pieces import named_in_pieces
 from skinbayes.problem.rheology import flow_curves_of
 
@@ -64,7 +64,8 @@ class PredictingModel(BoundModel):
         if conditions is not None:
             curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, rows, self.spec.path)
             tables = replace(tables, flow_curves=curves)
-            deduplicated = distinct_rows(plan_inputs(self.fixed, self.free, rows, self.tied), rows, tables)
+            further = {} if self.populations is None else self.populations.levels_of_rows(rows)
+            deduplicated = distinct_rows(self.planned(rows), rows, tables, further)
 
         def piece(part: FloatArray) -> dict[str, FloatArray]:
             found = self.evaluate(self.inputs(part, conditions), tables, deduplicated)

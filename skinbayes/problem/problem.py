@@ -24,7 +24,7 @@ class Problem(StatisticalModel):
     ----------
     spec, forward, free, fixed, conditions, dataset, observations, input_spread, groups, tables, flow_curves, settings : see
         :class:`~skinbayes.problem.bound.BoundModel`
-    tied, correlated, surface_prior : see there too
+    tied, correlated, surface_prior, populations : see there too
 
     Examples
     --------

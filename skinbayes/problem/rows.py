@@ -139,6 +139,7 @@ def used_columns(spec: ModelSpec, forward: ForwardModel, taken: Collection[str])
         *(spec.observables if spec.spread == "use" else ()),
     ]
     labels = {p.by for p in (*spec.parameters, *spec.noise_parameters) if p.by_column}
+    labels |= {column for population in spec.populations for column in population.columns}
     labels |= {scale.level for scale in spec.groups} | {spec.rheology_by, *spec.rows}
     if spec.discrepancy is not None:
         labels |= {spec.discrepancy.within, *spec.discrepancy.columns}

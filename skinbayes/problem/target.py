@@ -17,7 +17,9 @@ from skinbayes.problem.memory import LOGARITHM, with_innovations
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.statistics.annealing import SWEEPS, anneal, effective_number, largest_power
 from skinbayes.statistics.densities import LogDensity
+from skinbayes.statistics.hierarchy import Hierarchy
 from skinbayes.statistics.innovations import InnovationTransform
+from skinbayes.statistics.priors import IndependentPriors
 from skinbayes.statistics.transforms import Transform, VectorTransform, transform_for
 
 CANDIDATES_PER_START = 20
@@ -103,6 +105,57 @@ class PosteriorTarget:
         with np.errstate(all="ignore"):
             return impossible(self.problem.data_likelihood()(self.transform.inverse(position)))
 
+    @cached_property
+    def hierarchy(self) -> Hierarchy | None:
+        """Which coordinates belong to single people; None where no parameter has a population.
+
+        None also where rows share something that is integrated out: then people are not independent given what they share.
+        """
+        problem = self.problem
+        if (
+            not isinstance(problem, StatisticalModel)
+            or problem.populations is None
+            or problem.shared is not None
+        ):
+            return None
+        return problem.populations.hierarchy(problem.conditions, len(problem.observations))
+
+    def pointwise(self, position: FloatArray) -> FloatArray:
+        """Log-likelihood of each datum, ``(B, M)``; −inf where impossible, NaN where the forward model has no answer."""
+        assert isinstance(self.problem, StatisticalModel)
+        if not self.use_likelihood:
+            return np.zeros((len(position), self.problem.likelihood.size))
+        with np.errstate(all="ignore"):
+            return self.problem.likelihood.pointwise(self.transform.inverse(position))
+
+    def log_prior(self, position: FloatArray) -> FloatArray:
+        """Log prior density of each row of ``position``, Jacobian included."""
+        with np.errstate(all="ignore"):
+            return self._prior(position)
+
+    @cached_property
+    def _prior(self) -> LogDensity:
+        return self.problem.prior_density().transformed(self.transform)
+
+    def shared_parameters(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Of those coordinates that are no deviates, ``(B, K)``: parameters in SI, and ln of the prior density of each."""
+        transform, prior = self._of_shared
+        with np.errstate(all="ignore"):
+            theta = transform.inverse(position)
+            density = prior.each(theta)
+            # where the density is zero the Jacobian may be infinite
+            return theta, np.where(
+                density > -np.inf, density + transform.log_jacobian_each(position), -np.inf
+            )
+
+    @cached_property
+    def _of_shared(self) -> tuple[VectorTransform, IndependentPriors]:
+        assert self.hierarchy is not None
+        places = self.hierarchy.shared
+        priors = [self.problem.free[i].prior for i in places]
+        transform = VectorTransform(tuple(self.transform.transforms[i] for i in places))
+        return transform, IndependentPriors(tuple(p for p in priors if p))
+
     def prior_transform(self, unit: FloatArray) -> FloatArray:
         """Positions at quantiles of the prior, rows of the unit cube ``(B, D)``."""
         return self.transform.forward(self.problem.prior_transform(unit))
@@ -137,6 +190,8 @@ class PosteriorTarget:
         InputError
             Fewer than ``count`` of the prior draws have a finite posterior density.
         """
+        if self.hierarchy is not None:
+            return self._starts_of_people(rng, count)
         theta = self.problem.draw_prior(rng, CANDIDATES_PER_START * count)
         position = self.transform.forward(theta)
         # the likelihood is what costs: it is evaluated once for each candidate
@@ -176,6 +231,18 @@ class PosteriorTarget:
 
         led = anneal(position[chosen], weight[chosen], beta, final, only_prior, likelihood, rng, sweeps)
         return led, evaluated
+
+    def _starts_of_people(self, rng: np.random.Generator, count: int) -> tuple[FloatArray, int]:
+        """Draws of the prior: with many people none of them is near the data, and moves person by person lead there."""
+        theta = self.problem.draw_prior(rng, CANDIDATES_PER_START * count)
+        position = self.transform.forward(theta)
+        usable = np.isfinite(self.log_density(position)) & np.isfinite(position).all(axis=-1)
+        if usable.sum() < count:
+            raise InputError(
+                f"{self.problem.spec.path}: only {usable.sum()} of {len(usable)} prior draws have a finite posterior density, "
+                f"where {count} are needed to start from; narrow the priors to values at which there is a prediction"
+            )
+        return position[usable][:count], len(theta)
 
 
 def _with_walls(support: tuple[float, float]) -> Transform:

@@ -158,6 +158,9 @@ def _labels(spec: ModelSpec) -> dict[str, str]:
                 f"{spec.path}: data.rows: the data of the model have no column '{column}'.{suggestions(column, own)}"
             )
         reasons.setdefault(column, []).append(f"the model takes the rows with {', '.join(kept)}")
+    for population in spec.populations:
+        for column in population.columns:
+            reasons.setdefault(column, []).append(f"{population.name} has a population over it")
     if spec.rheology_by is not None:
         reasons.setdefault(spec.rheology_by, []).append("each has its flow curve")
     return {column: "; ".join(said) for column, said in reasons.items()}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from skinbayes.fit.people import population_findings
 from skinbayes.fit.predicted import row_names
 from skinbayes.plot.updates import fit_updates
 from skinbayes.problem.surface_numbers import surface_numbers
@@ -34,7 +35,8 @@ def digest(fit: Fit, with_priors: bool = True) -> dict[str, Any]:
         ``prior_sensitivity`` (parameter to what its prior half and twice as wide would change; None if model or data are gone).
         ``validity`` (flag to the number of rows flagged in at least 5 % of the draws, the fraction of all predictions, what it
         means, and the fraction of each of these rows), ``groups`` (column to the quantiles of the scale of its effects and of
-        each effect, the scale over the noise, the fraction of the variance), ``discrepancy`` (column to the
+        each effect, the scale over the noise, the fraction of the variance), ``populations`` (parameter to its median, how people
+        differ, each of them, and what treatments do, with its probability), ``discrepancy`` (column to the
         quantiles of what the theory misses along it), ``ridges`` (pairs of parameters, exponent, the
         combination that is known and how well), ``priors`` (parameter to its update by the data), ``trends`` (observable to the
         checks of its residuals along columns that simulated data hardly ever meet, the most surprising first), ``repeats``
@@ -46,6 +48,7 @@ def digest(fit: Fit, with_priors: bool = True) -> dict[str, Any]:
         **({"prior_sensitivity": brief_sensitivity(fit)} if with_priors else {}),
         "validity": {flag.name: flag.to_dict(names) for flag in flags(fit)},
         "groups": {finding.column: finding.to_dict() for finding in group_findings(fit)},
+        "populations": {finding.parameter: finding.to_dict() for finding in population_findings(fit)},
         "discrepancy": {finding.column: finding.to_dict() for finding in discrepancy_findings(fit)},
         "ridges": [asdict(ridge) for ridge in posterior_ridges(fit)],
         "priors": {

@@ -15,6 +15,7 @@ from skinbayes.plot import (
     plot_discrepancy,
     plot_effects,
     plot_levels,
+    plot_people,
     plot_predictive,
     plot_prior_posterior,
     plot_profile,
@@ -89,6 +90,7 @@ def drawings(fit: Fit) -> list[Drawing]:
         *_data(fit),
         _predictive(fit),
         *([DISCREPANCY] if curves_of(fit) else []),
+        *([PEOPLE] if problem is not None and problem.populations is not None else []),
         *(
             []
             if problem is None
@@ -131,6 +133,14 @@ DISCREPANCY = Drawing(
     "Smooth curves by which the data differ from the theory, with their ranges.",
     "The line is the median of what the theory misses, bands hold half and 90 % of the posterior. Its shape counts: a height "
     "that all of the curve shares cannot be told from the parameters, and is what makes the bands wide.",
+)  # fmt: skip
+
+
+PEOPLE = Drawing(
+    "people", plot_people, "People one by one",
+    "Values of each person with their ranges, in order, over the median of the population.",
+    "Dots are medians, bars hold half and 90 % of the posterior of each person's value. The grey line is the median of the "
+    "population, the band its 90 % interval: people of few data lie nearer to it.",
 )  # fmt: skip
 
 

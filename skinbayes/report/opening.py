@@ -50,7 +50,7 @@ def question(fit: Fit) -> str:
             typical=float(np.median(along)),
         )
         where = f", {spoken_name(condition)} {ends},"
-    asked = list(dict.fromkeys(label.partition("[")[0] for label in fit.names if not is_scatter(label)))
+    asked = list(dict.fromkeys(label.partition("[")[0] for label in fit.shown_names if not is_scatter(label)))
     names = [f"{spoken_name(name)} {_plain_symbol(fit, name)}".strip() for name in asked[:MOST_ASKED]]
     if len(asked) > MOST_ASKED:
         names.append(f"{len(asked) - MOST_ASKED} more")

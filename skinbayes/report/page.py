@@ -19,6 +19,7 @@ from skinbayes.report.figures import pictures
 from skinbayes.report.groups import effect_rows, group_sentences
 from skinbayes.report.joint_page import joint_context
 from skinbayes.report.origin import data_origin
+from skinbayes.report.people import people_rows, people_sentences
 from skinbayes.report.rendering import rendered, write_whole
 from skinbayes.report.ridges import ridge_sentences
 from skinbayes.report.sensitivity import EXPLAINED, HEADERS, page_sensitivity
@@ -108,10 +109,14 @@ def context(fit: Fit, baseline_models: AgainstBaselines | None = None) -> dict[s
         "derived_folded": folded,
         "pictures": drawn,
         "figures": [
-            key for key in list(drawn)[1:] if key != "discrepancy" and not (groups and key == "effects")
+            key
+            for key in list(drawn)[1:]
+            if key not in ("discrepancy", "people") and not (groups and key == "effects")
         ],
         "misses": discrepancy_sentences(fit),
         "groups": groups,
+        "populations": people_sentences(fit),
+        "people": people_rows(fit),
         "effects": effect_rows(fit),
         "validity": validity_sentences(fit),
         **_baselines(baseline_models),

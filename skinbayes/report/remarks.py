@@ -8,6 +8,7 @@ from skinbayes.phrases import and_list
 from skinbayes.plot.updates import fit_updates
 from skinbayes.report import quality, sentences
 from skinbayes.report.opening import is_scatter
+from skinbayes.report.people import people_sentences
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -29,7 +30,7 @@ def remarks(fit: Fit) -> list[str]:
         for label, update in fit_updates(fit).items()
         if update.verdict == "not updated" and not is_scatter(label)
     ]
-    said = [" ".join(quality.verdict(fit)), *sentences.disagreements(fit)]
+    said = [" ".join(quality.verdict(fit)), *people_sentences(fit), *sentences.disagreements(fit)]
     if silent:
         said.append(f"Only the prior speaks about {and_list(silent)}.")
     said += sentences.open_ends(fit)

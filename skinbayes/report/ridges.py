@@ -47,7 +47,8 @@ class PosteriorRidge:
 def posterior_ridges(fit: Fit) -> list[PosteriorRidge]:
     """The ridges of a fit, strongest first."""
     found = []
-    for ridge in ridges(fit.names, fit.theta()):
+    shown = [i for i, label in enumerate(fit.names) if label in fit.shown_names]
+    for ridge in ridges(fit.shown_names, fit.theta()[:, shown]):
         if not ridge.logarithmic:
             found.append(PosteriorRidge(ridge.first, ridge.second, ridge.correlation, None, "", None, None))
             continue

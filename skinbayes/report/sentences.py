@@ -121,7 +121,9 @@ def learnt_products(fit: Fit) -> list[str]:
 def scatter(fit: Fit) -> list[str]:
     """One entry for each parameter of noise and group effects that was fitted: what is not explained is no knowledge of skin."""
     return [
-        f"{title_name(fit, label)}: {value_sentence(fit, label)}." for label in fit.names if is_scatter(label)
+        f"{title_name(fit, label)}: {value_sentence(fit, label)}."
+        for label in fit.shown_names
+        if is_scatter(label)
     ]
 
 

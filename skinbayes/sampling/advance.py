@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
 from skinbayes.sampling.moves import MoveFactory
@@ -70,13 +71,26 @@ class Density:
         """Log-density of each row of ``position`` (shape ``(B, D)``), shape ``(B,)``."""
         value = np.array(self._target.log_density(position), dtype=float)
         invalid = np.isnan(value) | (value == np.inf)
-        if invalid.any():
-            if not self.invalid:
-                self.first_invalid = position[np.argmax(invalid)].copy()
-            value[invalid] = -np.inf
+        value[invalid] = -np.inf
+        self.counted(position, invalid)
+        return value
+
+    def counted(self, position: FloatArray, invalid: NDArray[np.bool_]) -> None:
+        """Count evaluations that were made, ``(B, D)``, and which of them gave no number."""
+        if invalid.any() and not self.invalid:
+            self.first_invalid = position[np.argmax(invalid)].copy()
         self.evaluations += len(position)
         self.invalid += int(np.count_nonzero(invalid))
-        return value
+
+
+class _Counting:
+    """A density as emcee asks for it, which also counts what moves evaluate by themselves."""
+
+    def __init__(self, density: Density) -> None:
+        self._density, self.counted = density, density.counted
+
+    def __call__(self, position: FloatArray) -> tuple[FloatArray, None]:
+        return self._density(position), None
 
 
 def advance(target: Target, state: EnsembleState, steps: int, moves: MoveFactory) -> EnsembleSteps:
@@ -102,7 +116,7 @@ def advance(target: Target, state: EnsembleState, steps: int, moves: MoveFactory
     density = Density(target)
     sampler = emcee.EnsembleSampler(walkers, dimension, density, moves=moves())
     # emcee's own wrapper prints to standard output when a call is interrupted, raises on NaN and accepts +inf.
-    sampler.compute_log_prob = lambda position: (density(position), None)
+    sampler.compute_log_prob = _Counting(density)
     # emcee ignores a random state it does not understand, in silence: a RandomState tuple is what works.
     current = emcee.State(state.positions, state.log_density, random_state=state.random_state, copy=True)
     positions = np.empty((steps, walkers, dimension))

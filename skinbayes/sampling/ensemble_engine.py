@@ -17,7 +17,7 @@ from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import RunProgress
 from skinbayes.sampling.search import FOUND_WITH
 from skinbayes.sampling.store import SampleStore
-from skinbayes.sampling.target import Target
+from skinbayes.sampling.target import Target, is_hierarchical
 from skinbayes.sampling.verdict import verdict
 from skinbayes.sampling.weighted_draws import ImportanceDraws
 
@@ -47,7 +47,7 @@ class EnsembleEngine:
             return _weighted(chains, chains.importance)
         positions, log_density = chains.draws(DRAWS_PER_CHAIN)
         words = verdict(chains, target, options)
-        asked = options.importance and chains.converged
+        asked = options.importance and chains.converged and not is_hierarchical(target)
         evidence, spent = _evidence(chains, target, options) if asked else (None, 0)
         diagnostics = _diagnostics(chains, words) | {"evaluations": chains.evaluations + spent}
         if chains.refused:

@@ -14,6 +14,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.sampling.advance import Density, EnsembleState, EnsembleSteps, advance
 from skinbayes.sampling.chains import Chains
 from skinbayes.sampling.finish import Finish
+from skinbayes.sampling.hierarchical_moves import HierarchicalMoves
 from skinbayes.sampling.moves import MoveFactory, moves_for
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.progress import EnsembleProgress
@@ -21,7 +22,7 @@ from skinbayes.sampling.starts import initial_states
 from skinbayes.sampling.stopping import StoppingReport, is_check, judge
 from skinbayes.sampling.store import FINGERPRINT, SampleStore
 from skinbayes.sampling.stuck_walkers import gathered, last_gathering, left_behind
-from skinbayes.sampling.target import Target
+from skinbayes.sampling.target import Target, is_hierarchical, moved_together
 from skinbayes.sampling.weighted_draws import ImportanceDraws
 from skinbayes.sampling.workers import sharing_out
 
@@ -74,7 +75,7 @@ def run_ensembles(
     MachineError
         If steps cannot be stored any more, or a worker process died twice; steps stored before are kept.
     """
-    moves = moves or moves_for(options.expensive or options.importance)
+    moves = moves or _moves_for(target, options)
     rounds = store.open(draw_identity(target, options, moves)) if store is not None else []
     last = options.max_steps // options.block_steps * options.block_steps
     report: StoppingReport | None = None
@@ -150,16 +151,23 @@ def draw_identity(
     -------
     values that can be written as JSON, under names that make sense in a message
     """
-    moves = moves or moves_for(options.expensive or options.importance)
+    moves = moves or _moves_for(target, options)
+    made = moves if hasattr(moves, "__qualname__") else type(moves)
     return {
         FINGERPRINT: target.fingerprint,
         "coordinates": list(target.names),
         "sampler option seed": options.seed,
         "sampler option ensembles": options.ensembles,
-        "sampler option walkers": options.walkers_for(len(target.names)),
+        "sampler option walkers": options.walkers_for(moved_together(target)),
         "sampler option block_steps": options.block_steps,
-        "moves": f"{moves.__module__}.{moves.__qualname__}",
+        "moves": f"{made.__module__}.{made.__qualname__}",
     }
+
+
+def _moves_for(target: Target, options: SamplerOptions) -> MoveFactory:
+    if is_hierarchical(target):
+        return HierarchicalMoves(target)  # type: ignore[arg-type]
+    return moves_for(options.expensive or options.importance)
 
 
 def _attempt(

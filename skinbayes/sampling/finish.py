@@ -13,7 +13,7 @@ from skinbayes.sampling.importance import Attempt, importance_draws
 from skinbayes.sampling.options import SamplerOptions
 from skinbayes.sampling.search import Search
 from skinbayes.sampling.stopping import is_check
-from skinbayes.sampling.target import Target
+from skinbayes.sampling.target import Target, is_hierarchical
 from skinbayes.sampling.weighted_draws import ImportanceDraws
 
 FIRST_ATTEMPT = 25
@@ -73,7 +73,13 @@ class Finish:
         spent : evaluations of the run so far, without those of attempts
         """
         options = self._options
-        due = options.importance and steps >= self._not_before and steps > 0
+        # in the tens of dimensions of people a proposal resembles no posterior
+        due = (
+            options.importance
+            and not is_hierarchical(self._target)
+            and steps >= self._not_before
+            and steps > 0
+        )
         if not due or not is_check(steps, options.block_steps, FIRST_ATTEMPT):
             return None
         first = max(steps // 2, discarded)

@@ -8,7 +8,7 @@ from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.sampling.advance import Density, EnsembleState
 from skinbayes.sampling.options import SamplerOptions
-from skinbayes.sampling.target import Target
+from skinbayes.sampling.target import Target, is_hierarchical, moved_together
 
 
 def initial_states(target: Target, options: SamplerOptions) -> list[EnsembleState]:
@@ -32,14 +32,14 @@ def initial_states(target: Target, options: SamplerOptions) -> list[EnsembleStat
         If a start is impossible (its ensemble, walker and coordinates are named) or the starts do not spread over
         all coordinates.
     """
-    walkers = options.walkers_for(len(target.names))
+    walkers = options.walkers_for(moved_together(target))
     states = []
     for index, child in enumerate(np.random.SeedSequence(options.seed).spawn(options.ensembles)):
         for_starts, for_steps = child.spawn(2)
         found, spent = _found(target, np.random.default_rng(for_starts), walkers)
         positions = np.array(found, dtype=float)
         log_density = Density(target)(positions)
-        _check(target.names, index, positions, log_density, walkers)
+        _check(target.names, index, positions, log_density, walkers, not is_hierarchical(target))
         # emcee draws from a RandomState; a Generator would be ignored.
         generator = np.random.RandomState(np.random.MT19937(for_steps))
         random_state = tuple(generator.get_state(legacy=True))
@@ -54,7 +54,12 @@ def _found(target: Target, rng: np.random.Generator, walkers: int) -> tuple[Floa
 
 
 def _check(
-    names: tuple[str, ...], index: int, positions: FloatArray, log_density: FloatArray, walkers: int
+    names: tuple[str, ...],
+    index: int,
+    positions: FloatArray,
+    log_density: FloatArray,
+    walkers: int,
+    spans: bool = True,
 ) -> None:
     where = f"starts of ensemble {index + 1}"
     if positions.shape != (walkers, len(names)) or log_density.shape != (walkers,):
@@ -76,6 +81,8 @@ def _check(
         raise InputError(
             f"{where}: all walkers begin at the same {', '.join(flat)}; dispersed starts are expected."
         )
+    if not spans:  # people are moved one by one, so that walkers need not span the whole space
+        return
     scaled = (positions - positions.mean(axis=0)) / positions.std(axis=0)
     if np.linalg.matrix_rank(scaled, tol=1e-8 * np.sqrt(walkers)) < len(names):
         raise InputError(f"{where}: the walkers lie in a plane of fewer than {len(names)} dimensions.")

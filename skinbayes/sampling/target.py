@@ -41,3 +41,14 @@ class Target(Protocol):
 
     def integrated_out(self, position: FloatArray, rng: np.random.Generator) -> dict[str, FloatArray]:
         """Quantities that were integrated out, drawn at positions ``(B, D)``, each ``(B,)`` under a name for people."""
+
+
+def is_hierarchical(target: Target) -> bool:
+    """Whether a target says which of its coordinates belong to single people."""
+    return getattr(target, "hierarchy", None) is not None
+
+
+def moved_together(target: Target) -> int:
+    """The largest number of coordinates that are moved together: all of them, unless people are moved one by one."""
+    hierarchy = getattr(target, "hierarchy", None)
+    return len(target.names) if hierarchy is None else int(hierarchy.together)

@@ -242,6 +242,10 @@ class IndependentPriors:
 
     def __call__(self, theta: FloatArray) -> FloatArray:
         """Log-density of each row of ``theta``, shape ``(B,)``; −inf outside the support of any prior."""
+        return np.asarray(self.each(theta).sum(axis=1))
+
+    def each(self, theta: FloatArray) -> FloatArray:
+        """Log-density of each parameter by itself, shape ``(B, D)``."""
         log_mass, below, above = self._ends
         terms = np.empty(theta.shape)
         with np.errstate(all="ignore"):
@@ -249,7 +253,7 @@ class IndependentPriors:
                 terms[:, columns] = kernel(theta.take(columns, axis=1), constants)
             terms -= log_mass
             terms[~((theta > below) & (theta < above))] = -inf
-            return np.asarray(terms.sum(axis=1))
+        return terms
 
     @cached_property
     def _families(self) -> list[tuple[Kernel, tuple[FloatArray, ...], NDArray[np.intp]]]:

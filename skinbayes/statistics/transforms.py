@@ -193,8 +193,12 @@ class VectorTransform:
 
     def log_jacobian(self, z: FloatArray) -> FloatArray:
         """ln |det dx/dz| of each row of ``z`` (shape ``(B, D)``), shape ``(B,)``."""
+        return np.asarray(self.log_jacobian_each(z).sum(axis=-1))
+
+    def log_jacobian_each(self, z: FloatArray) -> FloatArray:
+        """ln |dx/dz| of each coordinate, shape of ``z``."""
         terms = np.empty(z.shape)
         with np.errstate(all="ignore"):
             for kind, columns, lower, upper in self._blocks:
                 terms[..., columns] = _log_jacobian(kind, np.ascontiguousarray(z[..., columns]), lower, upper)
-        return np.asarray(terms.sum(axis=-1))
+        return terms

@@ -128,6 +128,9 @@ def test_every_word_in_code_is_a_word_of_the_vocabulary_or_the_grammar() -> None
         "predict",
         "normal",
         "person_effect",
+        "population",
+        "contrast",
+        "effect",
     }
     words = set(re.findall(r"`([a-z][a-z_-]+)`", PAGE))
     assert words <= known, sorted(words - known)
@@ -168,7 +171,7 @@ noise = { family = "lognormal", noise_scale = 0.1 }
     example = tomllib.loads(block)
     if "data" in example:  # has its own test below
         return
-    if "groups" in example or "covariates" in example:
+    if "groups" in example or "covariates" in example or "population" in block:
         data = data.replace("adams2007-forearm-glass", "fehlberg2025-finger-stribeck")
     if "discrepancy" in example or "noise" in example:
         rows = [f"{i},{0.01 * 2.0**i},8,0.{3 + i % 2}" for i in range(9)]
