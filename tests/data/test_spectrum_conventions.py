@@ -118,7 +118,7 @@ def test_a_model_file_can_name_it(tmp_path: Path) -> None:
     again = problem.to_toml()
     assert 'convention = "contact.engineering"' in again and 'rms_height_measured = "2 µm"' in again
     with pytest.raises(
-        InputError, match=r"mine.toml, line 6: surface.convention: a named surface has no file"
+        InputError, match=r"mine.toml, line 6: surface.convention: no file is given that this is about"
     ):
         (tmp_path / "mine.toml").write_text(MODEL.replace('file = "surface.csv"', 'name = "paper_reference"'))
         sb.load_problem(tmp_path / "mine.toml")

@@ -213,6 +213,13 @@ def test_a_saved_fit_is_a_surface(tmp_path: Path) -> None:
         read_surface_draws(tmp_path / "broken.nc")
     with pytest.raises(sb.InputError, match="no such file or folder"):
         read_surface_draws(tmp_path / "nothing")
+    rough = {"rms_height": {"lognormal": ["22 um", 0.3]}}
+    other = sb.build_problem(
+        "friction", ROWS, surface="paper_reference", parameters=SKIN | rough, noise=NOISE
+    )
+    foreign = sb.Fit.from_draws(other, other.draw_prior(np.random.default_rng(1), 2000))
+    with pytest.raises(sb.InputError, match="a fit of friction_coefficient, which would count twice"):
+        read_surface_draws(foreign.save(tmp_path / "foreign.nc"))
     few = sb.Fit.from_draws(problem, draws[:150])
     with pytest.raises(sb.InputError, match="did not converge"):
         read_surface_draws(few.save(tmp_path / "few.nc"))
