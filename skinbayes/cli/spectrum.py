@@ -58,7 +58,10 @@ FIT_FRAGMENT = (
     type=click.Choice(["fill", "rectangle"]),
     default="fill",
     show_default=True,
-    help="Fill up to 10 % undefined pixels, or keep the largest rectangle without them.",
+    help="Fill up to 10 % undefined pixels, or keep the largest rectangle (of lines the longest part) without them.",
+)
+@click.option(
+    "--undefined-height", metavar="HEIGHT", help="Height that marks undefined pixels in the file: '-9999 um'."
 )
 @click.option(
     "--remove-spikes", is_flag=True, help="Take pixels that stand far out of their neighbours for undefined."
@@ -130,6 +133,7 @@ def spectrum(
     refuse_existing(targets, overwrite)
     names = _names(files)
     settings = _settings(options)
+    _refuse_idle(names, options)
     collection = SurfaceCollection([_measured(path, names[path], settings, options) for path in names])
     collection.numbers()  # what cannot be used is refused before anything is written
     found = _fit(collection, seed) if fitted else None
@@ -185,6 +189,28 @@ def _names(files: tuple[str, ...]) -> dict[str, str]:
     return {path: name if short.count(name) == 1 else path for path, name in zip(files, short, strict=True)}
 
 
+FOR_SURFACES = (
+    "unit", "pixel_size", "channel", "negative_replica", "periodic", "detrend", "undefined_height", "remove_spikes", "window",
+    "bins_per_decade", "tip_radius", "resolution",
+)  # fmt: skip
+"""Options that say nothing about spectra that were computed elsewhere."""
+
+
+def _refuse_idle(names: dict[str, str], options: dict[str, Any]) -> None:
+    """Refuse options that none of the files takes: their user believes that they do something."""
+    from skinbayes.files.measured_spectrum import is_spectrum
+
+    spectra = [is_spectrum(path) for path in names]
+    given = {name for name, value in options.items() if value not in (None, False)}
+    if "convention" in given and not any(spectra):
+        raise InputError("--convention: none of the files is a spectrum; drop it")
+    if all(spectra) and (idle := [name for name in FOR_SURFACES if name in given]):
+        raise InputError(
+            f"--{idle[0].replace('_', '-')}: spectra that were computed elsewhere are taken as they are; drop it, or "
+            "give heights"
+        )
+
+
 def _settings(options: dict[str, Any]) -> dict[str, Any]:
     """Options as arguments of `analyse_surface`, lengths and wavevectors in SI."""
     from skinbayes.units import parse_quantity
@@ -199,11 +225,13 @@ def _settings(options: dict[str, Any]) -> dict[str, Any]:
             raise InputError(
                 f"--{name.replace('_', '-')}: found {options[name][:40]}; expected a length > 0 m"
             )
+    mark = options["undefined_height"]
     band = options["band"]
     return lengths | {
         "negative_replica": options["negative_replica"],
         "trend": options["detrend"],
         "undefined": options["undefined"],
+        "undefined_height": None if mark is None else parse_quantity(mark, "m", where="--undefined-height"),
         "without_spikes": options["remove_spikes"],
         "window": options["window"],
         "bins_per_decade": options["bins_per_decade"],

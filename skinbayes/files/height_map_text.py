@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 import warnings
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import FloatArray, IndexArray
 from skinbayes.errors import InputError
 from skinbayes.files.reading import read_file
 from skinbayes.files.separated import decoded
@@ -22,6 +23,8 @@ LARGEST_TEXT = 1_000_000_000
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?")
 _UNDEFINED = ("nan", "NaN", "NAN", "", "-", "NA", "n/a", "bad", "BAD", "***", "No data", "no data")
+_GAP = 4.0
+"""Distance of neighbours on a line, in their median one, from which on nothing is interpolated between them."""
 _UNEVEN = 0.01
 """Deviation of the places of a line from even ones, in their distance, up to which they are taken as they are."""
 
@@ -32,6 +35,8 @@ def read_text(path: Path, stated: Scale) -> tuple[HeightMap | LineProfile, str] 
     try:
         text = decoded(data, path)
     except InputError:
+        if _is_damaged(data):
+            raise
         return None  # no text at all
     lines = text.splitlines()
     begin = 0
@@ -44,12 +49,23 @@ def read_text(path: Path, stated: Scale) -> tuple[HeightMap | LineProfile, str] 
         begin += 1
     elif not _is_numbers(lines[begin], separator):
         return None
+    elif begin and lines[begin - 1].strip():  # NumPy writes headers as comments
+        with suppress(InputError):  # any other comment
+            header = _header(path, lines[begin - 1].lstrip("# \t"))[0]
     rest = "\n".join(lines[begin:])
     del lines
     table = _numbers(path, rest, separator)
     if header is not None and table.shape[1] != len(header):
         raise InputError(f"{path}: {table.shape[1]} columns below a header of {len(header)}")
     return _surface(path, table, header, stated)
+
+
+def _is_damaged(data: bytes) -> bool:
+    """Whether bytes are numbers but for some that are no text: readers of other formats would skip what is around them."""
+    head = data[:2000]
+    return not head.startswith((b"\xff\xfe", b"\xfe\xff")) and all(
+        b in b"0123456789+-.,;eE \t\r\n" for b in head
+    )
 
 
 def _separator(line: str) -> str:
@@ -81,7 +97,8 @@ def _is_numbers(line: str, separator: str) -> bool:
 def _header(path: Path, line: str) -> tuple[dict[str, float] | None, str]:
     """Columns x, y, z of a header with units, and m of one unit of each; None if the line is no such header."""
     separator = next((mark for mark in ("\t", ";", ",") if mark in line), " ")
-    names = [split_header(cell.strip()) for cell in line.split(separator)] if "[" in line else []
+    cells = line.replace("(", "[").replace(")", "]").split(separator) if set("[(") & set(line) else []
+    names = [(name.lower(), unit) for name, unit in map(split_header, cells)]
     if not names or not all(name in ("x", "y", "z", "height") for name, _ in names):
         return None, _separator(line)
     found: dict[str, float] = {}
@@ -131,6 +148,8 @@ def _numbers(path: Path, text: str, separator: str) -> FloatArray:
         raise InputError(f"{path}: {what}; expected as many in each") from None
     if frame.shape[1] > 1 and frame.iloc[:, -1].isna().all():
         frame = frame.iloc[:, :-1]  # each line ends in a separator
+    if (ends := frame.iloc[:, -1].isna()).any():
+        _refuse_short_rows(path, text, separator, frame.shape[1], np.flatnonzero(ends))
     wrong = [i for i in range(frame.shape[1]) if frame.iloc[:, i].dtype.kind not in "iuf"]
     if wrong:
         cells = frame.iloc[:, wrong[0]]
@@ -140,6 +159,18 @@ def _numbers(path: Path, text: str, separator: str) -> FloatArray:
             "expected a number"
         )
     return frame.to_numpy(dtype=np.float64)
+
+
+def _refuse_short_rows(path: Path, text: str, separator: str, columns: int, rows: IndexArray) -> None:
+    """Refuse rows, of those that end without a number, which have too few cells: a file that was cut off has one."""
+    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    mark = None if separator == " " else separator
+    for row in rows.tolist():
+        if (found := len(lines[row].split(mark))) < columns:
+            raise InputError(
+                f"{path}: row {row + 1} of the numbers has {found} columns, the first one {columns}; expected as many in each, "
+                "nan where nothing was seen"
+            )
 
 
 def _surface(
@@ -195,10 +226,14 @@ def line_of_points(path: Path, x: FloatArray, height: FloatArray, periodic: bool
     done: tuple[str, ...] = ()
     if np.abs(x - even).max() > _UNEVEN * pixel:
         pixel = float(np.median(steps))
-        count = int((x[-1] - x[0]) / pixel) + 1
+        count = int((x[-1] - x[0]) / pixel * (1 + 1e-12)) + 1
         check_pixels(path, count)
         even = x[0] + pixel * np.arange(count)
-        height = np.interp(even, x, height)
+        after = np.clip(np.searchsorted(x, even), 1, x.size - 1)
+        bridged = np.minimum(even - x[after - 1], x[after] - even) > 0.01 * pixel
+        height = np.where(
+            bridged & (x[after] - x[after - 1] > _GAP * pixel), np.nan, np.interp(even, x, height)
+        )
         done = (f"{x.size} uneven places interpolated to {count} even ones",)
     found = made(path, np.asarray(height, dtype=np.float64), pixel, pixel, periodic)
     assert isinstance(found, LineProfile)

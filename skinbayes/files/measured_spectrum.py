@@ -20,8 +20,12 @@ FEWEST_ROWS = 5
 """Rows from which the scatter of a spectrum can be told from its curvature."""
 
 
+_SIGNS = ("wavevector", "wavenumber", "power_spectr", "power spectr", "psd", "m^4", "m⁴", "[1/", "(1/")
+"""What headers of spectra have and those of surfaces do not; whether the columns are right is said where they are read."""
+
+
 def is_spectrum(path: str | Path) -> bool:
-    """Whether a file is text with a column of wavevectors, and not a surface."""
+    """Whether the header of a text is that of a spectrum, and not of a surface."""
     with open_file(Path(path), LARGEST_TABLE * 100, "a file") as stream:
         head = stream.read(4096)
     lines = [
@@ -29,7 +33,7 @@ def is_spectrum(path: str | Path) -> bool:
         for line in head.decode("latin-1").splitlines()
         if line.strip() and not line.lstrip().startswith("#")
     ]
-    return bool(lines) and "wavevector" in lines[0]
+    return bool(lines) and any(sign in lines[0].lower() for sign in _SIGNS)
 
 
 def read_measured_spectrum(path: str | Path, stated: StatedSurface | None = None) -> MeasuredSpectrum:
@@ -42,7 +46,7 @@ def read_measured_spectrum(path: str | Path, stated: StatedSurface | None = None
     Parameters
     ----------
     path : the CSV
-    stated : what is known from elsewhere, in place of what comments say
+    stated : what is known from elsewhere, as for `read_spectrum`
 
     Returns
     -------

@@ -56,7 +56,7 @@ def read_spectrum(path: str | Path, stated: StatedSurface | None = None) -> Tabu
     Parameters
     ----------
     path : the CSV
-    stated : what is known from elsewhere, in place of what comments say
+    stated : what is known from elsewhere: a convention that comments do not contradict, measured values in place of theirs
 
     Returns
     -------
@@ -119,7 +119,9 @@ def spectrum_and_columns(path: str | Path, stated: StatedSurface | None = None) 
                 spectrum = TabulatedSpectrum.from_profile(wavevector, power)
     except InputError as error:
         raise InputError(f"{path}, column '{power_name}': {error}") from None
-    spectrum = _normalised(path, spectrum, power_name, _merged(_comments(table), stated or StatedSurface()))
+    spectrum = _normalised(
+        path, spectrum, power_name, _merged(path, _comments(table), stated or StatedSurface())
+    )
     return ReadSpectrum(spectrum, table, named)
 
 
@@ -134,7 +136,12 @@ def _comments(table: CsvTable) -> StatedSurface:
     return stated_surface(given, lambda key: f"{table.path}, line {lines[key]}: {key}")
 
 
-def _merged(comments: StatedSurface, stated: StatedSurface) -> StatedSurface:
+def _merged(path: Path, comments: StatedSurface, stated: StatedSurface) -> StatedSurface:
+    if None not in (comments.convention, stated.convention) and comments.convention != stated.convention:
+        raise InputError(
+            f"{path}: the file states the convention '{comments.convention}', but '{stated.convention}' is asked for; expected "
+            "one of them: drop it, or correct the comment in the file"
+        )
     return comments._replace(**{key: value for key, value in stated._asdict().items() if value is not None})
 
 

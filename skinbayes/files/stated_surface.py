@@ -58,9 +58,7 @@ def stated_about(block: SurfaceBlock | None, where: Callable[..., str]) -> State
     given = {} if block is None else block.model_dump(include=set(StatedSurface._fields), exclude_none=True)
     if block is None or block.file is None:
         for key in given:
-            raise InputError(
-                f"{where('surface', key)}: a named surface has no file that this is about; drop it"
-            )
+            raise InputError(f"{where('surface', key)}: no file is given that this is about; drop it")
         return None
     return stated_surface(given, lambda key: where("surface", key))
 

@@ -131,6 +131,11 @@ def read_surface_draws(path: str | Path) -> SurfaceDraws:
         raise InputError(
             f"{path}: this fit did not converge, so that its draws are not the posterior; resume it first"
         )
+    if "power_spectral_density" not in (observed := provenance.get("observables", ())):
+        raise InputError(
+            f"{path}: a fit of {', '.join(observed) or 'other data'}, which would count twice if they are those of this model; "
+            "expected a fit of a power spectrum (power_spectral_density), or a CSV of draws"
+        )
     if provenance.get("options", {}).get("shape") == "free-form":
         raise InputError(
             f"{path}: a fit of a free form, which five roughness parameters do not give; expected one of the self-affine shape"

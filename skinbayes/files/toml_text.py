@@ -161,6 +161,13 @@ def line_of(text: str, keys: Sequence[str]) -> int | None:
     return best
 
 
+_COUNTERFACE = (
+    "a measured spectrum of the counterface is not taken as a table, which would end where the instrument did; expected "
+    "counterface_rms_height, counterface_hurst_exponent, counterface_wavevector_min, counterface_wavevector_rolloff and "
+    "counterface_wavevector_max under [parameters], which 'skinbayes spectrum FILE --fit' finds"
+)
+
+
 def explain(error: ValidationError, path: Path, text: str, known: Collection[str] = ()) -> str:
     """One sentence for the first thing a file got wrong, with how many more there are.
 
@@ -176,7 +183,11 @@ def explain(error: ValidationError, path: Path, text: str, known: Collection[str
     line = line_of(text, keys) if keys and first["type"] != "missing" else None
     place = f"{path}{f', line {line}' if line else ''}: {'.'.join(map(shortened, keys))}".rstrip(": ")
     if first["type"] == "extra_forbidden":
-        said = f"unknown key.{suggestions(keys[-1], list(known) if len(keys) == 1 else [])}"
+        said = (
+            _COUNTERFACE
+            if keys[-1].startswith("counterface")
+            else f"unknown key.{suggestions(keys[-1], list(known) if len(keys) == 1 else [])}"
+        )
     elif first["type"] == "missing":
         said = "is missing"
     elif first["type"] == "value_error":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.plot.numbers import prefix_of
+from skinbayes.plot.numbers import prefix_of, quantity
 from skinbayes.plot.style import BLUE, GREY, SERIES, SMALL, VERMILLION, inches, look, new_figure, shortened
 from skinbayes.topography import HeightMap
 
@@ -165,11 +165,29 @@ def plot_measured_spectrum(collection: SurfaceCollection, width: str | None = No
         ax.set_ylabel("C(q) [m⁴]")
         ax.grid(True)
         top = ax.secondary_xaxis("top", functions=(_wavelength, _wavelength))
-        top.set_xlabel("wavelength [m]")
+        top.set_xlabel("wavelength")
+        _label_decades(ax, top)
         top.spines["top"].set_visible(True)
         if several:
             ax.legend(loc="lower left", handlelength=1.2)
         return figure
+
+
+def _label_decades(ax: Axes, top: Any) -> None:
+    """Labels at decades, of bands shorter than two also at 2 and 5 times them; never one on another."""
+    from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, NullFormatter
+
+    decades = float(np.log10(np.divide(*ax.get_xlim()[::-1])))
+    between = (1.0, 2.0, 5.0)
+    top.xaxis.set_major_locator(LogLocator(subs=between if decades < 2 else (1.0,)))
+    top.xaxis.set_major_formatter(FuncFormatter(lambda value, _: quantity(value, "m", 1)))
+    if decades < 1:
+        ax.xaxis.set_major_locator(LogLocator(subs=between))
+        ax.xaxis.set_major_formatter(
+            LogFormatterSciNotation(labelOnlyBase=False, minor_thresholds=(np.inf, np.inf))
+        )
+    for axis in (ax.xaxis, top.xaxis):
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _wavelength(q: Any) -> Any:

@@ -26,7 +26,7 @@ from skinbayes.problem.populations import Part, Populations
 from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.ranges import input_ranges
 from skinbayes.problem.shared_scatter import SharedScatter
-from skinbayes.problem.surface_prior import SurfacePrior
+from skinbayes.problem.surface_prior import SurfacePrior, refuse_shapes
 from skinbayes.problem.tied import whole_ties
 from skinbayes.statistics.correlated_scatter import CorrelatedScatter
 from skinbayes.statistics.groups import CrossedGroups
@@ -207,7 +207,7 @@ class BoundModel(Posterior):
         Raises
         ------
         InputError
-            No table can be made for the priors.
+            No table can be made for the priors, or none for spectra of the many shapes that draws of a surface have.
 
         Examples
         --------
@@ -218,6 +218,12 @@ class BoundModel(Posterior):
         if prepared.prepare is not None and self.free:
             with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
                 prepared = prepared.prepare(prepared, self.ranges(), self.tables, progress, cores)
+            if (
+                self.surface_prior is not None
+                and self.forward.expensive
+                and prepared.evaluate is self.forward.evaluate
+            ):
+                refuse_shapes(self.surface_prior, self.forward.name, str(self.spec.path))
         self.__dict__["model"] = prepared
         return prepared
 

@@ -15,6 +15,7 @@ from skinbayes.files.surface_draws import SurfaceDraws
 from skinbayes.roughness import SelfAffineSpectrum, rms_slope
 from skinbayes.statistics.copula import GaussianCopula
 from skinbayes.statistics.priors import make_prior
+from skinbayes.units import format_quantity
 from skinbayes.vocabulary import QUANTITIES
 
 DEVIATE = "surface_deviate"
@@ -90,6 +91,27 @@ class SurfacePrior:
 def _log_slope(parameters: Mapping[str, FloatArray | float]) -> FloatArray:
     with np.errstate(all="ignore"):
         return np.log(rms_slope(SelfAffineSpectrum(**parameters)))
+
+
+HEIGHT = "rms_height"
+"""The roughness parameter that tables of films hold."""
+
+
+def refuse_shapes(prior: SurfacePrior, model: str, where: str) -> None:
+    """Refuse draws of the shape of a spectrum where a model without a table for them would solve every row anew."""
+    if shape := [name for name in prior.names if name != HEIGHT]:
+        medians = [float(np.median(prior.draws.draws[name])) for name in shape]
+        units = [QUANTITIES[name].unit for name in shape]
+        lines = ", ".join(
+            f"{name} = " + (f"{middle:.4g}" if unit == "1" else f'"{format_quantity(middle, unit, 4)}"')
+            for name, middle, unit in zip(shape, medians, units, strict=True)
+        )
+        raise InputError(
+            f"{where}: surface.posterior: '{model}' reads friction from a table, which holds any {HEIGHT} of a spectrum of one "
+            f"shape; with draws of {', '.join(shape)} every row would be solved anew, for weeks. Expected these fixed under "
+            f"[parameters], such as at their medians: {lines}. {HEIGHT} stays as the draws have it, and what is not known of "
+            "the shape is left out"
+        )
 
 
 def surface_prior(draws: SurfaceDraws | None, given: Collection[str], where: str) -> SurfacePrior | None:

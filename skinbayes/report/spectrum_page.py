@@ -36,6 +36,9 @@ SHOWN = (0, 2, 4, 5, 6, 7, 8, 9)
 """Those that the page shows in its table; the others stand with each surface."""
 
 
+MOST_APART = float(np.log(10))
+"""Standard deviation of ln C between surfaces, here a factor of 10, beyond which they are not of one kind."""
+
 FIT_EXPLAINED = (
     "A surface whose spectrum is constant up to the roll-off and falls as a power of the wavevector beyond it, from the smallest "
     "wavevector measured to the largest there is. Nobody measured the largest: its prior goes from 1e7 to 1e10 1/m, and slope "
@@ -138,10 +141,21 @@ def collection_sentences(collection: SurfaceCollection) -> list[str]:
         elif merged.scatter < 0.005:
             said.append("Where surfaces overlap they agree within what their finite size explains.")
         else:
+            apart = (
+                f"{100 * merged.scatter:.2g} %"
+                if merged.scatter < 0.5
+                else f"a factor of {np.exp(merged.scatter):.2g}"
+            )
             said.append(
-                f"Where surfaces overlap they differ by {100 * merged.scatter:.2g} % in C(q), beyond what their finite size "
+                f"Where surfaces overlap they differ by {apart} in C(q), beyond what their finite size "
                 f"explains; the errors of the spectrum of all {len(collection.surfaces)} contain that."
             )
+            if merged.scatter > MOST_APART:
+                said.append(
+                    "So different surfaces are not one: check their units, and what was measured. "
+                    "Together they stand for none of them."
+                )
+        said += _gaps(collection)
         said += [
             f"{one.name} lies {'above' if level > 0 else 'below'} it, by a factor of {np.exp(abs(level)):.3g} in C(q)."
             for one, level in zip(collection.surfaces, merged.level, strict=True)
@@ -150,6 +164,20 @@ def collection_sentences(collection: SurfaceCollection) -> list[str]:
     said.append(
         "Friction depends on shorter waves too, which nobody measured here: a model says what it assumes of them."
     )
+    return said
+
+
+def _gaps(collection: SurfaceCollection) -> list[str]:
+    """Wavevectors between the bands of surfaces that no surface covers."""
+    ends = sorted((one.spectrum.wavevector_min, one.spectrum.wavevector_max) for one in collection.surfaces)
+    said, reached = [], ends[0][1]
+    for low, high in ends[1:]:
+        if low > 1.5 * reached:
+            said.append(
+                f"Nothing was measured between {quantity(reached, '1/m', 2)} and {quantity(low, '1/m', 2)}: a power law joins "
+                "what lies on both sides."
+            )
+        reached = max(reached, high)
     return said
 
 

@@ -2,34 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from skinbayes.arrays import FloatArray
+from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.errors import InputError
 from skinbayes.roughness import rms_height, rms_slope, total_area_ratio
 from skinbayes.topography.area_spectrum import SpectrumNumbers, spectrum_numbers, spectrum_of, usual_window
 from skinbayes.topography.artefacts import (
-    MOST_SPIKES,
     Plateau,
     find_plateaus,
     find_spikes,
     invert_replica,
+    refuse_marks,
     remove_spikes,
+    undefined_at,
 )
 from skinbayes.topography.band import Band, reliable_band
 from skinbayes.topography.bins import BINS_PER_DECADE
 from skinbayes.topography.directional_spectrum import DirectionalSpectrum, directional_spectrum_of
+from skinbayes.topography.findings import findings
 from skinbayes.topography.height_map import HeightMap, LineProfile
 from skinbayes.topography.line_spectrum import LINE_BINS_PER_DECADE, isotropic_spectrum, line_spectrum
 from skinbayes.topography.measured_spectrum import MeasuredSpectrum
 from skinbayes.topography.numbers import SurfaceNumbers, surface_numbers
 from skinbayes.topography.periodogram import map_periodogram
 from skinbayes.topography.trend import Trend, remove_trend, trend_share
-from skinbayes.topography.undefined import fill_undefined, largest_defined_rectangle, undefined_share
+from skinbayes.topography.undefined import fill_undefined, largest_defined_part, undefined_share
 from skinbayes.topography.windows import Window
 
 Undefined = Literal["fill", "rectangle"]
@@ -44,6 +45,7 @@ class SurfaceAnalysis:
     surface : as prepared; its steps say how
     undefined : share of pixels that had no height, dimensionless
     spikes : number of pixels that stand out of their neighbours, and were removed if that was asked for, dimensionless
+    spike_share : share of the mean square slope that steps to and from these pixels make, dimensionless
     plateaus : saturated areas
     own : rms height, slope and more of the prepared surface itself
     window : its name
@@ -58,6 +60,7 @@ class SurfaceAnalysis:
     surface: HeightMap | LineProfile
     undefined: float
     spikes: int
+    spike_share: float
     plateaus: tuple[Plateau, ...]
     own: SurfaceNumbers
     window: Window
@@ -75,7 +78,7 @@ class SurfaceAnalysis:
 
     def findings(self) -> list[str]:
         """What a reader of the spectrum has to know, in sentences."""
-        return list(_findings(self))
+        return list(findings(self))
 
 
 def analyse_surface(
@@ -84,6 +87,7 @@ def analyse_surface(
     negative_replica: bool = False,
     trend: Trend | None = None,
     undefined: Undefined = "fill",
+    undefined_height: float | None = None,
     without_spikes: bool = False,
     window: Window | None = None,
     bins_per_decade: int | None = None,
@@ -94,8 +98,8 @@ def analyse_surface(
 ) -> SurfaceAnalysis:
     """Prepare a surface and compute its isotropic spectrum, its own numbers beside those of the spectrum, and its anisotropy.
 
-    In this order: replica inverted, saturated areas and spikes looked for, rectangle without undefined pixels (or they are filled
-    after the trend is gone), trend removed, window, spectrum (Eq. 1 of the paper), band. Each step is one function of
+    In this order: saturated areas looked for, replica inverted, rectangle without undefined pixels (or they are filled after the
+    trend is gone), spikes looked for, trend removed, window, spectrum (Eq. 1 of the paper), band. Each step is one function of
     `skinbayes.topography`.
 
     Parameters
@@ -103,7 +107,9 @@ def analyse_surface(
     surface : map or line as it was read, heights in m
     negative_replica : whether heights are those of a negative cast
     trend : ``"none"``, ``"tilt"`` or ``"curvature"``; tilt and curvature if omitted, none of a periodic surface
-    undefined : ``"fill"`` fills up to 10 % of the pixels, ``"rectangle"`` keeps the largest rectangle without them
+    undefined : ``"fill"`` fills up to 10 % of the pixels, ``"rectangle"`` keeps the largest rectangle, or longest part of
+        a line, without them
+    undefined_height : height that marks undefined pixels in the file, m; none if omitted
     without_spikes : whether spikes become undefined pixels
     window : ``"hann"``, ``"blackman"`` or ``"none"``; Hann's if omitted, none of a periodic surface
     bins_per_decade : of wavevectors, dimensionless; 16 of a map and 10 of a line if omitted
@@ -119,7 +125,8 @@ def analyse_surface(
     Raises
     ------
     InputError
-        if there is no roughness, more undefined pixels than can be filled, or no reliable wavevector
+        if there is no roughness, a height that seems to mark undefined pixels, more of these than can be filled, or no reliable
+        wavevector
 
     References
     ----------
@@ -140,20 +147,22 @@ def analyse_surface(
     extent = float(np.nanmax(surface.height) - np.nanmin(surface.height))
     if extent == 0:
         raise InputError("all heights are the same: there is no roughness")
+    if undefined_height is not None:
+        surface = undefined_at(surface, undefined_height)
     plateaus = find_plateaus(surface)
+    refuse_marks(surface, plateaus)
     lacking = undefined_share(surface)
     if negative_replica:
         surface = invert_replica(surface)
     if undefined == "rectangle" and lacking:
-        if isinstance(surface, LineProfile):
-            raise InputError("a line has no rectangle; expected its undefined pixels to be filled")
-        surface = largest_defined_rectangle(surface)
-    spikes = int(find_spikes(surface).sum())
+        surface = largest_defined_part(surface)
+    spiky = find_spikes(surface)
     if without_spikes:
         surface = remove_spikes(surface)
     trend = ("none" if surface.periodic else "curvature") if trend is None else trend
     surface = remove_trend(surface, trend)
     own = surface_numbers(surface)
+    spike_share = _share_of_slope(surface, spiky, own)
     if not own.rms_height > 1e-9 * extent or not own.rms_slope:
         raise InputError("nothing is left when the trend is gone: there is no roughness")
     surface = fill_undefined(surface)
@@ -188,6 +197,10 @@ def analyse_surface(
             surface, window=window, bins_per_decade=bins_per_decade or LINE_BINS_PER_DECADE, band=limits
         )
         spectrum = isotropic_spectrum(profile, source)
+        if spectrum.wavevector_min > limits.wavevector_min:
+            limits = limits._replace(
+                wavevector_min=spectrum.wavevector_min, lower="where a line begins to tell C"
+            )
         whole, directions = SpectrumNumbers(float("nan"), float("nan")), None
         table = spectrum.tabulated()
         inside = SpectrumNumbers(float(rms_height(table)), float(rms_slope(table)))
@@ -195,7 +208,8 @@ def analyse_surface(
     return SurfaceAnalysis(
         surface=surface,
         undefined=lacking,
-        spikes=spikes,
+        spikes=int(spiky.sum()),
+        spike_share=spike_share,
         plateaus=plateaus,
         own=own,
         window=window,
@@ -208,48 +222,18 @@ def analyse_surface(
     )
 
 
+def _share_of_slope(surface: HeightMap | LineProfile, spiky: BoolArray, own: SurfaceNumbers) -> float:
+    """Share of the mean square slope beside pixels that stand out."""
+    spiky = spiky & ~np.isnan(surface.height)
+    if not spiky.any() or not own.rms_slope:
+        return 0.0
+    without = surface_numbers(replace(surface, height=np.where(spiky, np.nan, surface.height)))
+    return float(max(0.0, 1 - (without.rms_slope / own.rms_slope) ** 2))
+
+
 def _asked_band(band: tuple[float, float]) -> Band:
     if not 0 < band[0] < band[1] < np.inf:
         raise InputError(
             f"band: found {band[0]:g} to {band[1]:g} 1/m; expected two wavevectors > 0 that increase"
         )
     return Band(float(band[0]), float(band[1]), "as asked for", "as asked for")
-
-
-def _findings(one: SurfaceAnalysis) -> Iterator[str]:
-    surface = one.surface
-    for plateau in one.plateaus:
-        end = "largest" if plateau.highest else "smallest"
-        yield (
-            f"{100 * plateau.share:.2g} % of the pixels have exactly the {end} height that was read: the instrument was "
-            "saturated there, and the spectrum is that of a surface cut off."
-        )
-    share = one.spikes / surface.height.size
-    if one.spikes and not any("spike" in step for step in surface.steps):
-        few = share <= MOST_SPIKES
-        yield (
-            f"{'1 pixel' if one.spikes == 1 else f'{one.spikes} pixels'} ({100 * share:.2g} %) stand far out of the neighbours"
-            + (
-                " like spikes and were kept."
-                if few
-                else "; so many are no spikes, but steps, or heights in coarse counts."
-            )
-        )
-    if one.window == "none" and not surface.periodic:
-        yield (
-            "Without a window the edges of a field that is not periodic add a spectrum of their own, which falls as 1/q³ and "
-            "hides steeper ones."
-        )
-    filled = one.undefined if any("filled" in step for step in surface.steps) else 0.0
-    if filled > 0.01:
-        yield f"Waves shorter than the filled areas lack up to {100 * filled:.2g} % of their power."
-    taken = one.trend_share[one.spectrum.reliable]
-    if taken.size and taken[0] > 0.02:
-        yield f"Removing the trend took {100 * taken[0]:.2g} % of the longest waves in the band, and less of shorter ones."
-    found = one.anisotropy
-    if found is not None and found.slope_degree > max(0.1, found.slope_degree_by_chance):
-        ratio = np.sqrt((1 - found.slope_degree) / (1 + found.slope_degree))
-        yield (
-            f"The surface is not isotropic: the slope along {np.degrees(found.slope_direction):.0f}° is largest, at right "
-            f"angles to it it is {ratio:.2g} times as large. C(q) is the mean over directions."
-        )

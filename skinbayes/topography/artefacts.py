@@ -147,6 +147,35 @@ class Plateau(NamedTuple):
     share: float
 
 
+MARK = 3.0
+"""Range of all other heights over which a plateau must stand apart from them to be no height, but a mark."""
+
+
+def refuse_marks(surface: HeightMap | LineProfile, plateaus: tuple[Plateau, ...]) -> None:
+    """Refuse a surface on which one height that many pixels have lies far from all others, as marks of undefined pixels do."""
+    height = surface.height[~np.isnan(surface.height)]
+    for plateau in plateaus:
+        others = height[height != plateau.height]
+        low, high = float(others.min()), float(others.max())
+        gap = low - plateau.height if not plateau.highest else plateau.height - high
+        if gap > MARK * (high - low):
+            micrometres = f"{1e6 * plateau.height:.10g} um"
+            raise InputError(
+                f"{100 * plateau.share:.2g} % of the pixels have exactly the height {micrometres}, and all others lie between "
+                f"{1e6 * low:.4g} and {1e6 * high:.4g} um: it seems to mark undefined pixels. Expected nan there, or "
+                f"--undefined-height '{micrometres}'"
+            )
+
+
+def undefined_at(surface: Surface, height: float) -> Surface:
+    """Make pixels undefined that have the height (m, to 1e-9 of it) with which a file marks them; InputError if none has."""
+    there = np.isclose(surface.height, height, rtol=1e-9, atol=1e-15)
+    if not there.any():
+        raise InputError(f"no pixel has the height {1e6 * height:.10g} um that is to mark undefined ones")
+    step = f"{int(there.sum())} pixels of the height {1e6 * height:.10g} µm taken as undefined"
+    return replace(surface, height=np.where(there, np.nan, surface.height), steps=(*surface.steps, step))
+
+
 def find_plateaus(surface: HeightMap | LineProfile) -> tuple[Plateau, ...]:
     """Saturated areas: one extreme height that far more pixels have than the height next to it.
 

@@ -176,9 +176,15 @@ def isotropic_spectrum(profile: ProfileSpectrum, source: str = "") -> MeasuredSp
         if best is None
         else slice(int(np.max(np.flatnonzero(best[2] >= MOST_ERROR**2), initial=-1)) + 1, None)
     )
-    if best is None or q[known].size < 4:
+    if best is None:
         raise InputError(
-            "the spectrum of the lines is that of no isotropic surface, or tells nothing about it: their noise is too large"
+            "no isotropic surface has lines of this spectrum: it rises with the wavevector in the band. Expected a band without "
+            "that, or a map"
+        )
+    if q[known].size < 4:
+        raise InputError(
+            f"lines tell C(q) within a factor of {1 + MOST_ERROR:g} in {q[known].size} of {q.size} bins; expected at least 4: "
+            "measure longer lines, take fewer bins a decade, or a band beyond the roll-off"
         )
     return MeasuredSpectrum(
         q[known],

@@ -78,4 +78,10 @@ class MeasuredSpectrum:
             if fewer than two bins are reliable
         """
         used = self.reliable
+        if np.count_nonzero(used) < 2:
+            raise InputError(
+                f"{self.source + ': ' if self.source else ''}{np.count_nonzero(used)} bins between {self.wavevector_min:.3g} and "
+                f"{self.wavevector_max:.3g} 1/m; expected at least 2 of those from {self.wavevector[0]:.3g} to "
+                f"{self.wavevector[-1]:.3g} 1/m"
+            )
         return TabulatedSpectrum(self.wavevector[used], self.power_spectral_density[used])

@@ -63,8 +63,8 @@ def fill_undefined(surface: Surface, most: float = MOST_FILLED) -> Surface:
         return surface
     if share > most:
         raise InputError(
-            f"{100 * share:.3g} % of the pixels are undefined; expected at most {100 * most:.3g} % to be filled: use the "
-            "largest rectangle without them"
+            f"{100 * share:.3g} % of the pixels are undefined; expected at most {100 * most:.3g} % to be filled: keep the "
+            f"{'largest rectangle' if isinstance(surface, HeightMap) else 'longest part'} without them (--undefined rectangle)"
         )
     if isinstance(surface, LineProfile):
         place = np.arange(hole.size)
@@ -162,6 +162,22 @@ def largest_defined_rectangle(surface: HeightMap) -> HeightMap:
     return replace(
         surface, height=surface.height[top:bottom, left:right], periodic=False, steps=(*surface.steps, step)
     )
+
+
+def largest_defined_part(surface: HeightMap | LineProfile) -> HeightMap | LineProfile:
+    """The largest rectangle of a map, or the longest part of a line, whose pixels all have a height (m), with one more step."""
+    if isinstance(surface, HeightMap):
+        return largest_defined_rectangle(surface)
+    edges = np.flatnonzero(np.diff(np.r_[True, np.isnan(surface.height), True].astype(int)))
+    begin, end = edges[::2], edges[1::2]
+    longest = int(np.argmax(end - begin))
+    first, last = int(begin[longest]), int(end[longest])
+    if last - first < LEAST_PIXELS:
+        raise InputError(
+            f"{100 * undefined_share(surface):.3g} % of the pixels are undefined, and no {LEAST_PIXELS} in a row are defined"
+        )
+    step = f"cut to the longest part without undefined pixels: {last - first} of {surface.height.size}"
+    return replace(surface, height=surface.height[first:last], periodic=False, steps=(*surface.steps, step))
 
 
 def _rectangle(good: BoolArray) -> tuple[int, int, int, int]:

@@ -161,3 +161,37 @@ def test_a_fit_reaches_the_model_that_names_it(tmp_path: Path, capsys: pytest.Ca
     assert any(name.startswith("surface_deviate") for name in problem.names)
     heights_drawn = problem.derived(problem.draw_prior(np.random.default_rng(1), 400))["rms_height"]
     assert np.median(heights_drawn) == pytest.approx(found["parameters"]["rms_height"]["median"], rel=0.1)
+
+
+def test_spectra_that_do_not_belong_together_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def spectrum(name: str, q: np.ndarray, factor: float) -> Path:
+        rows = "".join(
+            f"{a!r},{b!r}\n" for a, b in zip(q.tolist(), (factor * power(q)).tolist(), strict=True)
+        )
+        (tmp_path / name).write_text(f"# convention: paper\nwavevector [1/m],power_spectrum_2d [m^4]\n{rows}")
+        return tmp_path / name
+
+    one = spectrum("one.csv", np.geomspace(1e4, 1e6, 30), 1.0)
+    other = spectrum("other.csv", np.geomspace(1e4, 1e6, 30), 500.0)
+    away = spectrum("away.csv", np.geomspace(1e7, 1e8, 30), 1.0)
+    said = " ".join(run(capsys, one, other)[1].split())
+    assert "differ by a factor of" in said and "Together they stand for none of them" in said
+    said = " ".join(run(capsys, one, away)[1].split())
+    assert "Nothing was measured between 10⁶ 1/m and 10⁷ 1/m" in said
+    # nothing that is asked for is passed over, and nothing is converted twice
+    for given, words in (
+        ((one, "--convention", "contact.engineering"), "the file states the convention 'paper'"),
+        ((one, "--unit", "um"), "--unit: spectra that were computed elsewhere are taken as they are"),
+        ((one, "--band", "1e7 1/m", "1e8 1/m"), "one.csv: 0 bins between 1e+07 and 1e+08 1/m"),
+    ):
+        status, out, err = run(capsys, *given)
+        assert (status, out) == (2, "") and words in err
+    np.save(tmp_path / "map.npy", heights(1))
+    status, _, err = run(
+        capsys, tmp_path / "map.npy", "--unit", "um", "--pixel-size", "1 um", "--convention", "paper"
+    )
+    assert status == 2 and "none of the files is a spectrum" in err
+    (tmp_path / "named.csv").write_text("q [1/m],C [m^4]\n1e4,1e-20\n")
+    assert "expected the columns 'wavevector [1/m]'" in run(capsys, tmp_path / "named.csv")[2]

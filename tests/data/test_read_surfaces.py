@@ -97,6 +97,14 @@ def test_lines(tmp_path: Path) -> None:
         assert isinstance(found, LineProfile)
         assert found.height == pytest.approx(1e-6 * height) and found.pixel_size == pytest.approx(5e-7)
         assert found.steps == ()
+    for header in ("X [um],Z [um]", "x (um),z (um)", "# x [um],z [um]"):
+        found = read_surface(write(tmp_path, "f.csv", f"{header}\n{text_of(pairs)}")).surface
+        assert found.height == pytest.approx(1e-6 * height) and found.pixel_size == pytest.approx(5e-7)
+    # what lies in a gap was not measured
+    found = read_surface(
+        write(tmp_path, "g.csv", "x [um],z [um]\n" + text_of(np.r_[pairs[:8], pairs[14:]]))
+    ).surface
+    assert np.flatnonzero(np.isnan(found.height)).tolist() == list(range(8, 14))
     uneven = pairs[[0, 1, 2, 4, 5, 6, 7, 8, 9, 12, 13, 14, 15]]
     found = read_surface(write(tmp_path, "e.txt", text_of(uneven)), unit="um").surface
     assert found.steps == ("13 uneven places interpolated to 16 even ones",)
@@ -115,6 +123,10 @@ BAD = {
     "few columns.csv": (text_of(HEIGHT[:, :5]), GIVEN, "9 rows of 5 numbers; expected 1 .*heights of a line"),
     "ragged.csv": (text_of(HEIGHT) + "1," * 20 + "1\n", GIVEN, "line 10 of the numbers has 21 columns, those before it 12"),
     "word.csv": (text_of(HEIGHT).replace(",", ",oops,", 20), GIVEN, "cannot read|no known kind|oops"),
+    "cut off.csv": (text_of(HEIGHT)[:-120], GIVEN, "row 9 of the numbers has [0-9]+ columns, the first one 12"),
+    "zeros.txt": (
+        (text_of(np.tile(HEIGHT, (30, 1))) + "\0" * 20).encode(), GIVEN, "line 271: byte 1 of the line is a zero byte"
+    ),
     "a word below.csv": (
         text_of(HEIGHT) + ",".join(["1"] * 11 + ["oops"]) + "\n", GIVEN, "row 10 .*column 12: found 'oops'; expected a number"
     ),

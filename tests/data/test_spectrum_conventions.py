@@ -118,7 +118,7 @@ def test_a_model_file_can_name_it(tmp_path: Path) -> None:
     again = problem.to_toml()
     assert 'convention = "contact.engineering"' in again and 'rms_height_measured = "2 µm"' in again
     with pytest.raises(
-        InputError, match=r"mine.toml, line 6: surface.convention: a named surface has no file"
+        InputError, match=r"mine.toml, line 6: surface.convention: no file is given that this is about"
     ):
         (tmp_path / "mine.toml").write_text(MODEL.replace('file = "surface.csv"', 'name = "paper_reference"'))
         sb.load_problem(tmp_path / "mine.toml")
@@ -129,7 +129,13 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     (tmp_path / "again.csv").write_text(spectrum_text(spectrum))
     assert np.array_equal(read_spectrum(tmp_path / "again.csv").node_power, spectrum.node_power)
     stated = StatedSurface(convention="contact.engineering")
-    assert float(rms_height(read_spectrum(tmp_path / "again.csv", stated))) < float(rms_height(spectrum)) / 6
+    with pytest.raises(
+        InputError, match=r"the file states the convention 'paper', but 'contact.engineering' is asked for"
+    ):
+        read_spectrum(tmp_path / "again.csv", stated)
+    silent = (tmp_path / "again.csv").read_text().replace("# convention: paper\n", "")
+    (tmp_path / "silent.csv").write_text(silent)
+    assert float(rms_height(read_spectrum(tmp_path / "silent.csv", stated))) < float(rms_height(spectrum)) / 6
 
 
 def test_the_other_program_means_what_is_written_here() -> None:

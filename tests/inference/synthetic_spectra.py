@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from skinbayes.roughness import SelfAffineSpectrum
@@ -43,3 +45,15 @@ def made_up_surface(rng: np.random.Generator, seed: int, size: int = 256, pixel:
     }
     spectrum = SelfAffineSpectrum(**truth, wavevector_min=first, wavevector_max=10 ** rng.uniform(7.5, 9.5))
     return truth, spectrum, random_surface(spectrum, shape=(size, size), pixel_size=pixel, seed=seed)
+
+
+def map_of(
+    power: Callable[[np.ndarray], np.ndarray], *, seed: int, size: int = 256, pixel: float = 2e-6
+) -> HeightMap:
+    """One period of random waves of a power spectrum C(q), m^4, q in 1/m."""
+    q = 2 * np.pi * np.hypot(np.fft.fftfreq(size, pixel)[:, None], np.fft.rfftfreq(size, pixel))
+    q[0, 0] = q[0, 1]
+    waves = np.fft.rfft2(np.random.default_rng(seed).standard_normal((size, size)))
+    waves[0, 0] = 0.0
+    height = np.fft.irfft2(waves * np.sqrt(power(q)) * 2 * np.pi / pixel, s=(size, size))
+    return HeightMap(height, pixel_size_x=pixel, pixel_size_y=pixel, periodic=True)

@@ -17,7 +17,9 @@ from skinbayes.errors import InputError
 from skinbayes.fit import Fit, sample
 from skinbayes.fit.predicted import observed_values
 from skinbayes.plot import plot_corner, plot_data, plot_levels, plot_profile
+from skinbayes.plot.surface import plot_measured_spectrum, plot_surface
 from skinbayes.problem import load_problem
+from skinbayes.topography import LineProfile, MeasuredSurface, SurfaceCollection, analyse_surface
 
 PLOTS = [getattr(skinbayes.plot, name) for name in skinbayes.plot.__all__]
 
@@ -130,3 +132,15 @@ def test_data_are_drawn_against_the_condition_that_varies() -> None:
 
 def test_data_without_a_condition_that_varies_are_drawn_row_by_row() -> None:
     assert plot_data(made_up_fit(2, 4)).axes[0].get_yticklabels()[0].get_text() == "1"
+
+
+@pytest.mark.parametrize("pixel", [1e-8, 1e-6, 1e-3])
+@pytest.mark.parametrize("band", [None, (0.3, 1.5)])
+def test_figures_of_lines_and_their_spectra(pixel: float, band: tuple[float, float] | None) -> None:
+    walk = np.cumsum(np.random.default_rng(1).standard_normal(6000)) * pixel
+    asked = band and (band[0] / pixel, band[1] / pixel)
+    found = analyse_surface(LineProfile(walk, pixel_size=pixel), source="a line", band=asked)
+    one = MeasuredSurface(name="a line", kind="text", spectrum=found.spectrum, analysis=found)
+    for width in ("84 mm", None):
+        for figure in (plot_surface(one, width), plot_measured_spectrum(SurfaceCollection([one]), width)):
+            assert overlaps(figure) == []

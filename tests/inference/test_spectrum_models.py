@@ -213,6 +213,13 @@ def test_a_saved_fit_is_a_surface(tmp_path: Path) -> None:
         read_surface_draws(tmp_path / "broken.nc")
     with pytest.raises(sb.InputError, match="no such file or folder"):
         read_surface_draws(tmp_path / "nothing")
+    rough = {"rms_height": {"lognormal": ["22 um", 0.3]}}
+    other = sb.build_problem(
+        "friction", ROWS, surface="paper_reference", parameters=SKIN | rough, noise=NOISE
+    )
+    foreign = sb.Fit.from_draws(other, other.draw_prior(np.random.default_rng(1), 2000))
+    with pytest.raises(sb.InputError, match="a fit of friction_coefficient, which would count twice"):
+        read_surface_draws(foreign.save(tmp_path / "foreign.nc"))
     few = sb.Fit.from_draws(problem, draws[:150])
     with pytest.raises(sb.InputError, match="did not converge"):
         read_surface_draws(few.save(tmp_path / "few.nc"))
@@ -252,6 +259,19 @@ def test_a_counterface_adds_its_heights() -> None:
         sb.InputError, match="counterface_rms_height' has no effect without counterface_hurst_exponent"
     ):
         friction(counterface_rms_height=1e-6)
+
+
+@pytest.mark.parametrize(
+    "table", ["[counterface]\nfile", "[surface]\nname = 'paper_reference'\ncounterface_file"]
+)
+def test_a_table_of_a_counterface_is_refused_with_the_way_out(table: str, tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(
+        f"title = 'Two'\nforward = 'friction'\n{table} = 'glass.csv'\n[parameters]\n"
+    )
+    with pytest.raises(
+        sb.InputError, match=r"not taken as a table.*counterface_wavevector_max.*spectrum FILE --fit"
+    ):
+        sb.load_problem(tmp_path / "mine.toml")
 
 
 def test_ridges_carry_all_load_on_their_tops() -> None:
@@ -294,3 +314,33 @@ def test_shipped_models_take_a_spectrum_of_the_users_own(name: str) -> None:
     theta = np.array([NUMBERS.get(label, 1.0) for label in problem.names])
     assert problem.predict(theta)["power_spectral_density"] == pytest.approx(power, rel=1e-9)
     assert np.isfinite(problem.log_posterior(theta))
+
+
+def test_films_take_the_height_of_draws_and_say_why_not_the_shape(monkeypatch: pytest.MonkeyPatch) -> None:
+    from skinbayes.forward import stribeck_table
+
+    built = []
+
+    def noted(plan: object, *_: object) -> object:
+        built.append(plan)
+        raise sb.InputError("a table would be built now")
+
+    monkeypatch.setattr(stribeck_table, "kept_films", noted)
+    rows = {"speed_viscosity_product [N/m]": [1e-4, 1e-2], "friction_coefficient": [0.9, 0.4]}
+    skin = SKIN | {"young_modulus_layer": "7 MPa", "sphere_radius": "8 mm", "normal_force": "0.2 N"}
+    given = {"surface": made_up_draws(), "noise": NOISE, "options": {"contact": "line"}}
+    problem = sb.build_problem("stribeck", rows, parameters=skin, **given)
+    with pytest.raises(sb.InputError, match="a spectrum of one shape") as refused:
+        problem.prepare()
+    assert not built
+    for said in ("surface.posterior", "hurst_exponent = 0.7", 'wavevector_max = "', "[parameters]"):
+        assert said in str(refused.value)
+    # the way out that is named: the height is drawn as it is, and tables hold it
+    fixed = {"hurst_exponent": 0.75, "wavevector_max": "3e8 1/m"}
+    problem = sb.build_problem("stribeck", rows, parameters=skin | fixed, **given)
+    assert problem.names[1] == "surface_deviate[rms_height]"
+    low, high = problem.ranges()["rms_height"]
+    assert low < 4e-6 * np.exp(-0.3) and high > 4e-6 * np.exp(0.3)
+    with pytest.raises(sb.InputError, match="a table would be built now"):
+        problem.prepare()
+    assert len(built) == 1 and built[0].ranges["rms_height"] == (low, high)

@@ -5,16 +5,25 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import optimize
-from synthetic_spectra import made_up_surface, radial_average
+from synthetic_spectra import made_up_surface, map_of, radial_average
 
 import skinbayes as sb
 from skinbayes.problem.spectrum_problem import spectrum_problem
+from skinbayes.roughness import SelfAffineSpectrum
 
 TRUE = ("rms_height", "hurst_exponent", "wavevector_rolloff")
 
 
 def posterior_quantiles(problem: sb.Problem, seed: int) -> dict[str, np.ndarray]:
-    """5, 50 and 95 % quantiles from one ensemble of walkers in ln of the parameters, without any of the package's rules."""
+    """5, 50 and 95 % quantiles of `posterior_draws`."""
+    return {
+        name: np.quantile(column, [0.05, 0.5, 0.95])
+        for name, column in zip(problem.names, posterior_draws(problem, seed).T, strict=True)
+    }
+
+
+def posterior_draws(problem: sb.Problem, seed: int) -> np.ndarray:
+    """Draws from one ensemble of walkers in ln of the parameters, without any of the package's rules."""
     import emcee
 
     rng = np.random.default_rng(seed)
@@ -39,11 +48,7 @@ def posterior_quantiles(problem: sb.Problem, seed: int) -> dict[str, np.ndarray]
     sampler = emcee.EnsembleSampler(*walkers.shape, log_density, vectorize=True)
     sampler.random_state = np.random.RandomState(seed).get_state()
     sampler.run_mcmc(walkers, 500, skip_initial_state_check=True)
-    draws = np.exp(sampler.get_chain(discard=200, flat=True))
-    return {
-        name: np.quantile(column, [0.05, 0.5, 0.95])
-        for name, column in zip(problem.names, draws.T, strict=True)
-    }
+    return np.asarray(np.exp(sampler.get_chain(discard=200, flat=True)))
 
 
 def test_the_sampler_finds_what_quadrature_finds() -> None:
@@ -56,6 +61,36 @@ def test_the_sampler_finds_what_quadrature_finds() -> None:
         low, _, high = own[name]
         assert fit.quantiles(name) == pytest.approx(own[name], abs=0.12 * (high - low)), name
         assert low - 0.5 * (high - low) < truth[name] < high + 0.5 * (high - low)
+
+
+def compared(kink: float, seed: int) -> sb.Comparison:
+    """How `compare` puts the free form and the self-affine one on a random map, from draws of walkers without the package's rules.
+
+    Beyond 2e5 1/m the spectrum falls by a power of q that is ``kink`` less than before.
+    """
+    truth = SelfAffineSpectrum(
+        rms_height=3e-6, hurst_exponent=0.75, wavevector_min=1.2e4, wavevector_rolloff=5e4, wavevector_max=1e9
+    )
+    surface = map_of(lambda q: truth.power(q) * np.maximum(q / 2e5, 1.0) ** kink, seed=seed)
+    measured = radial_average(surface, 12)
+    fits = []
+    for shape in ("self-affine", "free-form"):
+        problem = spectrum_problem(measured, shape=shape, name=shape)
+        fits.append(sb.Fit.from_draws(problem, posterior_draws(problem, seed)[::16]))
+    return sb.compare(fits)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kink", [0.0, 1.6])
+def test_the_shape_that_a_surface_has_predicts_better(kink: float) -> None:
+    for seed in (1, 2):
+        comparison = compared(kink, seed)
+        best, other = comparison.models
+        print(kink, seed, best.name, other.elpd_difference, other.elpd_difference_se)
+        if kink:
+            assert best.name == "free-form" and other.told_apart
+        else:  # six factors that are not needed predict no better
+            assert not other.told_apart
 
 
 @pytest.mark.slow

@@ -1,5 +1,8 @@
 """Each step between a map as it was read and its spectrum, against closed forms, other solvers and known damage."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_array
@@ -22,6 +25,7 @@ from skinbayes.topography import (
     surface_numbers,
 )
 from skinbayes.topography.trend import trend_share
+from skinbayes.topography.undefined import largest_defined_part
 
 
 def a_map(height, pixel_x=1e-6, pixel_y=1e-6):
@@ -235,3 +239,50 @@ def test_steps_leave_the_map_as_it_was() -> None:
     assert np.array_equal(surface.height, before) and surface.steps == ()
     with pytest.raises(ValueError, match="read-only"):
         surface.height[0, 0] = 1.0
+
+
+def test_a_mark_of_undefined_pixels_is_no_height() -> None:
+    surface = cut(periodic_map(3, (96, 96)), 96, 96)
+    height = surface.height.copy()
+    height[20:26, 30:36] = -9999e-6
+    marked = replace(surface, height=height)
+    with pytest.raises(InputError, match=r"exactly the height -9999 um.*--undefined-height '-9999 um'"):
+        analyse_surface(marked)
+    found = analyse_surface(marked, undefined_height=-9999e-6)
+    assert found.undefined == 36 / 96**2 and "36 pixels of the height -9999" in found.surface.steps[0]
+    height[20:26, 30:36] = np.nan
+    assert np.array_equal(
+        found.surface.height, analyse_surface(replace(surface, height=height)).surface.height
+    )
+    with pytest.raises(InputError, match="no pixel has the height -32768 um"):
+        analyse_surface(marked, undefined_height=-32768e-6)
+    # a range that ran out is a plateau, but no mark
+    assert analyse_surface(replace(surface, height=np.minimum(surface.height, surface.height.std()))).plateaus
+
+
+def test_what_no_surface_has_is_said() -> None:
+    surface = cut(periodic_map(3, (96, 96)), 96, 96)
+    plain = " ".join(analyse_surface(surface).findings())
+    height = surface.height.copy()
+    height[50, 50] += 100 * height.std()
+    open_edges = replace(surface, height=np.cumsum(surface.height, axis=1), periodic=True)
+    growing = replace(surface, height=surface.height * (1 + 9 * np.exp(-(((np.arange(96) - 48) / 8) ** 2))))
+    for changed, said in (
+        (replace(surface, height=surface.height * 1e4), "An rms slope of .* is that of no surface"),
+        (replace(surface, pixel_size_x=0.02, pixel_size_y=0.02), r"The field is 1\.92 m long"),
+        (replace(surface, height=height), r"1 pixel .* like spikes, with \d\d % of the mean square slope"),
+        (open_edges, "times as much across the edges of the field as between neighbours"),
+        (growing, "Under the window the rms height is"),
+    ):
+        assert re.search(said, " ".join(analyse_surface(changed).findings())), said
+        assert not re.search(said, plain), said
+
+
+def test_the_longest_part_of_a_line_is_kept() -> None:
+    height = np.random.default_rng(4).standard_normal(400)
+    height[[0, 30, 31, 250]] = np.nan
+    found = largest_defined_part(LineProfile(height, pixel_size=1e-6))
+    assert np.array_equal(found.height, height[32:250])
+    assert found.steps == ("cut to the longest part without undefined pixels: 218 of 400",)
+    with pytest.raises(InputError, match="no 8 in a row are defined"):
+        largest_defined_part(LineProfile(np.where(np.arange(400) % 5, height, np.nan), pixel_size=1e-6))
