@@ -1,0 +1,88 @@
+"""How the site is built: ``sphinx-build -W --keep-going -c docs . build/site``.
+
+The source directory is the whole project, so that one link leads to the same place in the repository and on the site.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import skinbayes
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+project = "skinbayes"
+author = "The skinbayes developers"
+copyright = author
+version = release = skinbayes.__version__
+language = "en"
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx_copybutton",
+]
+root_doc = "docs/index"
+include_patterns = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**", "notebooks/*.ipynb"]
+exclude_patterns = [".*", "build", "dist", "skinbayes", "tests", "benchmarks", "datasets", "models", "**.py"]
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+highlight_language = "text"
+# pages that are not written yet in every version stand in the navigation by a pattern
+suppress_warnings = ["toc.empty_glob"]
+
+# notebooks are stored without outputs and run when the site is built
+nb_execution_mode = "force"
+nb_execution_timeout = 120
+nb_execution_raise_on_error = True
+nb_execution_show_tb = True
+
+default_role = "py:obj"
+autodoc_typehints = "none"
+autodoc_member_order = "alphabetical"
+autosummary_generate = False
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+add_module_names = False
+
+html_theme = "pydata_sphinx_theme"
+html_title = f"skinbayes {release}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_extra_path = ["_root"]
+html_math_renderer = "mathml"
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {
+    "navbar_align": "left",
+    "navbar_end": ["theme-switcher"],
+    "show_prev_next": True,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True
+
+
+def write_mathml(translator: Any, node: Any) -> None:
+    """Formulas as MathML, which browsers draw and screen readers read without a script."""
+    from docutils.nodes import SkipNode
+    from latex2mathml.converter import convert
+    from sphinx.ext.mathjax import nodes as mathjax_nodes
+
+    block = isinstance(node, mathjax_nodes.math_block)
+    formula = convert(node.astext(), display="block" if block else "inline")
+    translator.body.append(f'<div class="formula" tabindex="0">{formula}</div>' if block else formula)
+    raise SkipNode
+
+
+def setup(app: Sphinx) -> None:
+    """Add the renderer of formulas."""
+    app.add_html_math_renderer("mathml", (write_mathml, None), (write_mathml, None))
