@@ -41,12 +41,13 @@ nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 
-default_role = "py:obj"
+default_role = "literal"
 autodoc_typehints = "none"
 autodoc_member_order = "alphabetical"
 autosummary_generate = False
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_use_ivar = True
 add_module_names = False
 
 html_theme = "pydata_sphinx_theme"
@@ -83,6 +84,16 @@ def write_mathml(translator: Any, node: Any) -> None:
     raise SkipNode
 
 
+def keep_bars(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Bars in docstrings are those of absolute values, not of substitutions."""
+    lines[:] = [line if ">>>" in line or "``" in line else line.replace("|", r"\|") for line in lines]
+
+
 def setup(app: Sphinx) -> None:
-    """Add the renderer of formulas."""
+    """Add the renderer of formulas, and what docstrings and code fences need."""
+    from pygments.lexers.special import TextLexer
+
     app.add_html_math_renderer("mathml", (write_mathml, None), (write_mathml, None))
+    app.connect("autodoc-process-docstring", keep_bars, priority=400)
+    app.add_lexer("csv", TextLexer)
+    app.add_lexer("console", TextLexer)
