@@ -5,6 +5,7 @@ The source directory is the whole project, so that one link leads to the same pl
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import skinbayes
@@ -32,12 +33,10 @@ exclude_patterns = [".*", "build", "dist", "skinbayes", "tests", "benchmarks", "
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 highlight_language = "text"
-# pages that are not written yet in every version stand in the navigation by a pattern
-suppress_warnings = ["toc.empty_glob"]
 
 # notebooks are stored without outputs and run when the site is built
 nb_execution_mode = "force"
-nb_execution_timeout = 120
+nb_execution_timeout = 600
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 
@@ -86,7 +85,19 @@ def write_mathml(translator: Any, node: Any) -> None:
 
 def keep_bars(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
     """Bars in docstrings are those of absolute values, not of substitutions."""
-    lines[:] = [line if ">>>" in line or "``" in line else line.replace("|", r"\|") for line in lines]
+    for i, line in enumerate(lines):
+        if ">>>" not in line:
+            parts = line.split("``")  # every second one is literal
+            lines[i] = "``".join(part if n % 2 else part.replace("|", r"\|") for n, part in enumerate(parts))
+
+
+def name_the_rest(app: Sphinx, page: str, content: list[str]) -> None:
+    """Pages that no navigation names come last in that of the background, where ``the-rest`` stands."""
+    if "\nthe-rest\n" in content[0]:
+        docs = Path(app.srcdir) / "docs"
+        named = {line for path in docs.glob("*.md") for line in path.read_text(encoding="utf-8").splitlines()}
+        rest = sorted(path.stem for path in docs.glob("*.md") if path.stem not in named | {"index"})
+        content[0] = content[0].replace("\nthe-rest\n", "\n" + "".join(f"{one}\n" for one in rest))
 
 
 def setup(app: Sphinx) -> None:
@@ -95,5 +106,6 @@ def setup(app: Sphinx) -> None:
 
     app.add_html_math_renderer("mathml", (write_mathml, None), (write_mathml, None))
     app.connect("autodoc-process-docstring", keep_bars, priority=400)
+    app.connect("source-read", name_the_rest)
     app.add_lexer("csv", TextLexer)
     app.add_lexer("console", TextLexer)

@@ -15,7 +15,9 @@ from matplotlib.figure import Figure
 
 HERE = Path(__file__).resolve().parent
 PAGE = HERE.parent / "gallery.md"
-PROGRAM = re.compile(r"^```python\n(.*?)^```$(?:\n+!\[[^\]]+\]\(figures/([\w-]+\.svg)\))?", re.MULTILINE | re.DOTALL)
+PROGRAM = re.compile(
+    r"^```python\n(.*?)^```$(?:\n+!\[[^\]]+\]\(figures/([\w-]+\.svg)\))?", re.MULTILINE | re.DOTALL
+)
 
 
 def figures() -> Iterator[tuple[str, Figure]]:

@@ -33,8 +33,9 @@ def vocabulary() -> str:
 
 <!-- made by tests/architecture/reference_pages.py -->
 
-One name, symbol and unit for each quantity, the same in code, model files, CSV headers, results and these pages. In a header the name stands with a unit of
-your own in brackets, `normal_force [mN]` ([data](data.md#your-own-measurements-a-csv-with-units-in-its-header)); in a model file values are text with a unit.
+One name, symbol and unit for each quantity, the same in code, model files, CSV headers, results and these pages. In a header
+the name stands with a unit of your own in brackets, `normal_force [mN]`
+([data](data.md#your-own-measurements-a-csv-with-units-in-its-header)); in a model file values are text with a unit.
 Ranges are in the unit of the table. A quantity of your own: [a column](extending.md#a-column).
 
 {table(("name", "symbol", "unit", "range", "meaning"), rows)}
@@ -54,10 +55,15 @@ def model(spec: ModelSpec) -> str:
         data = f"Data: `{spec.dataset}`{rows}."
     else:
         data = "Data: yours, with `--data`." if spec.observables else "No data: it predicts."
-    observed = f" Observed: {', '.join(f'`{name}`' for name in spec.observables)}." if spec.observables else ""
+    observed = (
+        f" Observed: {', '.join(f'`{name}`' for name in spec.observables)}." if spec.observables else ""
+    )
     noise = ", ".join(f"`{family}`" for family in dict.fromkeys(spec.noise.values()))
     scatter = f" Noise: {noise}." if noise else ""
-    rows = [parameter(one) for one in (*spec.parameters, *spec.covariate_exponents, *spec.groups, *spec.noise_parameters)]
+    rows = [
+        parameter(one)
+        for one in (*spec.parameters, *spec.covariate_exponents, *spec.groups, *spec.noise_parameters)
+    ]
     return f"""## {spec.name}
 
 **{spec.title}.** {" ".join(spec.description.split())}
@@ -74,8 +80,8 @@ def shipped_models() -> str:
 
 <!-- made by tests/architecture/reference_pages.py -->
 
-Each is a [model file](model-files.md) in `models/`: `skinbayes new NAME -o mine.toml` copies one, `skinbayes show NAME` prints it with everything that it takes by
-default.
+Each is a [model file](model-files.md) in `models/`: `skinbayes new NAME -o mine.toml` copies one, `skinbayes show NAME`
+prints it with everything that it takes by default.
 
 {chr(10).join(model(spec) for spec in specs)}"""
 

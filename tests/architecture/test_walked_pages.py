@@ -15,6 +15,7 @@ def test_there_are_pages() -> None:
     assert {"quick-start", "load-series", "sites-and-people"} <= {path.stem for path in PAGES}
 
 
+@pytest.mark.site
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
 def test_the_page_can_be_followed(path: Path, tmp_path: Path) -> None:
     matplotlib.use("Agg")
@@ -24,7 +25,9 @@ def test_the_page_can_be_followed(path: Path, tmp_path: Path) -> None:
             assert f"`{step.name}`" in page, f"the text does not say that the file is {step.name}"
         elif step.shown is not None:
             wrong = walked.missing(step.shown, printed)
-            assert not wrong, f"{step.text}{wrong}\nif the change is meant: python tests/architecture/walked_pages.py"
+            assert not wrong, (
+                f"{step.text}{wrong}\nif the change is meant: python tests/architecture/walked_pages.py"
+            )
 
 
 def test_a_line_that_is_not_printed_is_noticed() -> None:

@@ -39,7 +39,11 @@ class Step:
 
 def pages() -> list[Path]:
     """Pages with a file to write or a program whose output is shown, those of a test of their own apart."""
-    return [path for path in sorted((ROOT / "docs").glob("*.md")) if "<!-- walked -->" in path.read_text(encoding="utf-8")]
+    return [
+        path
+        for path in sorted((ROOT / "docs").glob("*.md"))
+        if "<!-- walked -->" in path.read_text(encoding="utf-8")
+    ]
 
 
 def steps(page: str) -> Iterator[Step]:
@@ -52,10 +56,13 @@ def steps(page: str) -> Iterator[Step]:
         elif text.startswith("$ skinbayes"):
             commands = re.match(r"(?:\$ skinbayes [^\n]*\n)+", text)
             assert commands is not None
-            yield Step("commands", commands[0], shown=text[commands.end() :], span=(fence.start(3) + commands.end(), fence.end(3)))
+            end = commands.end()
+            yield Step("commands", commands[0], shown=text[end:], span=(fence.start(3) + end, fence.end(3)))
         elif language == "python":
-            below = after is not None and after[2] == "text" and not page[fence.end() : after.start()].strip()
-            yield Step("program", text, shown=after[3] if below and after else None, span=after.span(3) if below and after else (0, 0))
+            if after is not None and after[2] == "text" and not page[fence.end() : after.start()].strip():
+                yield Step("program", text, shown=after[3], span=after.span(3))
+            else:
+                yield Step("program", text)
 
 
 def walk(page: str, folder: Path) -> Iterator[tuple[Step, str]]:
