@@ -34,6 +34,9 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 highlight_language = "text"
 
+# fields of several classes have one name; types in docstrings are words, not references
+suppress_warnings = ["ref.python"]
+
 # notebooks are stored without outputs and run when the site is built
 nb_execution_mode = "force"
 nb_execution_timeout = 600
@@ -52,6 +55,8 @@ add_module_names = False
 html_theme = "pydata_sphinx_theme"
 html_title = f"skinbayes {release}"
 html_static_path = ["_static"]
+html_favicon = "_static/favicon.svg"
+html_context = {"default_mode": "auto"}
 html_css_files = ["site.css"]
 html_extra_path = ["_root"]
 html_math_renderer = "mathml"
