@@ -108,4 +108,4 @@ def test_two_models_of_dry_and_wet_skin_are_not_told_apart(
 
 def test_every_notebook_is_run_by_a_test() -> None:
     source = Path(__file__).read_text(encoding="utf-8")
-    assert not [path.name for path in NOTEBOOKS if f'"{path.name}")' not in source]
+    assert not [path.name for path in NOTEBOOKS if f'"notebooks" / "{path.name}"' not in source]

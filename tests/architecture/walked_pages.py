@@ -85,8 +85,9 @@ def walk(page: str, folder: Path) -> Iterator[tuple[Step, str]]:
 
 def words(text: str) -> list[str]:
     """Lines without their numbers, blanks and rules: draws may differ in a last bit from one library to the next."""
-    bare = [re.sub(r"[\d.,−+-]+|[─\s]+", " ", line).strip() for line in text.splitlines()]
-    return [re.sub(r" e(?= |$)", "", line) for line in bare if line]
+    bare = [re.sub(r"[\d.,−+-]+|[─\s]+", " ", line) for line in text.splitlines()]
+    lines = [" ".join(line.split()).removesuffix(" e") for line in bare]
+    return [line for line in lines if line]
 
 
 def missing(shown: str, printed: str) -> list[str]:
