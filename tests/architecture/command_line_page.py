@@ -26,13 +26,24 @@ def blocks() -> list[tuple[list[str], str]]:
     return [([line.removeprefix("$ ") for line in commands.splitlines()], shown) for commands, shown in found]
 
 
-def run(command: str, folder: Path) -> str:
-    """What ``command`` prints in ``folder``: standard output, or the message if it fails."""
+def numbers(text: str) -> dict[str, list[float]]:
+    """The rows of tables: name to the numbers in them, in the units shown."""
+    rows = [line.split() for line in text.splitlines() if re.match(r" [a-z]\S+  ", line)]
+    found: dict[str, list[float]] = {row[0]: [] for row in rows}
+    for name, *cells in rows:
+        found[name] += [float(cell) for cell in cells if re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", cell)]
+    return found
+
+
+def run(command: str, folder: Path, width: int | None = None) -> str:
+    """What ``command`` prints in ``folder``, ``width`` columns wide: standard output, or the message if it fails."""
     from skinbayes.cli import main
 
     arguments = [word for word in shlex.split(command)[1:] if not word.startswith(">")]
     out, err = io.StringIO(), io.StringIO()
     os.environ.pop("COLUMNS", None)  # the page is as wide as output that is no terminal
+    if width is not None:
+        os.environ["COLUMNS"] = str(width)
     with contextlib.chdir(folder), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
             main(arguments)

@@ -44,25 +44,16 @@ def test_quick_commands_print_what_the_page_shows(commands: list[str], shown: st
     )
 
 
-def numbers(text: str) -> dict[str, list[float]]:
-    """The rows of tables: name to the numbers in them, in the units shown."""
-    rows = [line.split() for line in text.splitlines() if re.match(r" [a-z]\S+  ", line)]
-    found: dict[str, list[float]] = {row[0]: [] for row in rows}
-    for name, *cells in rows:
-        found[name] += [float(cell) for cell in cells if re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", cell)]
-    return found
-
-
 def test_fit_and_compare_print_what_the_page_shows(tmp_path: Path) -> None:
     for commands, shown in BLOCKS:
         if subcommand(commands[0]) not in ("fit", "compare", "sensitivity") or page.ABRIDGED in shown:
             continue
         printed = "".join(page.run(command, tmp_path) for command in commands)
         # draws are the same from run to run, but libraries may differ in the last bit of a logarithm
-        for name, row in numbers(shown).items():
-            found = numbers(printed)[name]
+        for name, row in page.numbers(shown).items():
+            found = page.numbers(printed)[name]
             assert found == pytest.approx(row, rel=0.1, abs=0.1), f"{commands[-1]}: {name}"
-        assert set(numbers(printed)) == set(numbers(shown))
+        assert set(page.numbers(printed)) == set(page.numbers(shown))
 
 
 def test_the_json_document_has_the_keys_that_the_page_shows(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 import pytest
 from source_tree import ROOT
 
@@ -53,6 +54,58 @@ def test_the_worked_example_runs_and_concludes_what_it_says(
     assert "do not tell" in names["comparison"].sentences()[0]
 
 
+def follow(path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Run a notebook in a folder, which stays as it is."""
+    matplotlib.use("Agg")
+    monkeypatch.chdir(folder)
+    names = run(path)
+    assert not list(folder.iterdir())
+    return names
+
+
+@pytest.mark.site
+def test_a_load_series_whose_trend_the_theory_misses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = follow(ROOT / "notebooks" / "load_series.ipynb", tmp_path, monkeypatch)
+    without, curve = (names["known"][name] for name in ("without", "with a curve"))
+    assert float(curve["median"]) == pytest.approx(float(without["median"]), rel=0.1)  # "hardly moves"
+    assert float(curve["q95"] - curve["q05"]) > 3 * float(
+        without["q95"] - without["q05"]
+    )  # "several times as wide"
+
+
+@pytest.mark.site
+def test_sites_differ_by_a_ratio_that_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = follow(ROOT / "notebooks" / "sites_and_people.ipynb", tmp_path, monkeypatch)
+    table = names["fit"].summary()
+    alone = (
+        table.loc["frictional_shear_stress[palm]", "q95"] / table.loc["frictional_shear_stress[palm]", "q05"]
+    )
+    assert names["high"] / names["low"] < 1.15 < 3 < alone
+    means = names["rows"].groupby("body_site")["friction_coefficient"].apply(lambda one: np.log(one).mean())
+    assert np.log(names["middle"]) == pytest.approx(means["palm"] - means["forearm"], abs=0.02)
+
+
+@pytest.mark.site
+def test_a_stribeck_curve_of_the_paper_has_no_shift(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = follow(ROOT / "notebooks" / "stribeck_curve.ipynb", tmp_path, monkeypatch)
+    assert names["fit"].converged and names["low"] < 1 < names["high"] < 2
+
+
+@pytest.mark.site
+def test_humid_air_says_where_the_layer_softens(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = follow(ROOT / "notebooks" / "humid_air.ipynb", tmp_path, monkeypatch)
+    assert names["fit"].converged and 0.85 < names["low"] < names["high"] < 0.93
+
+
+@pytest.mark.site
+def test_two_models_of_dry_and_wet_skin_are_not_told_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = follow(ROOT / "notebooks" / "comparing_models.ipynb", tmp_path, monkeypatch)
+    assert all(fit.converged for fit in names["fits"])
+    assert "do not tell" in names["comparison"].sentences()[0]
+
+
 def test_every_notebook_is_run_by_a_test() -> None:
     source = Path(__file__).read_text(encoding="utf-8")
-    assert not [path.name for path in NOTEBOOKS if f'"{path.name}")' not in source]
+    assert not [path.name for path in NOTEBOOKS if f'"notebooks" / "{path.name}"' not in source]

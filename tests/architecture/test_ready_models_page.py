@@ -14,7 +14,7 @@ from source_tree import ROOT
 import skinbayes as sb
 from skinbayes.problem.template import data_template
 
-PAGE = (ROOT / "docs" / "how-to.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "ready-models.md").read_text(encoding="utf-8")
 READY = {"load-series": "loads.csv", "sites": "sites.csv", "treatment": "cream.csv"}
 SLOW = pytest.param("stribeck-own", marks=pytest.mark.slow)
 TABLES = READY | {"stribeck-own": "curve.csv"}
