@@ -31,7 +31,8 @@ _THINNEST = (
 )
 _LARGEST_ODDS = 20.0  # ln share/(1 − share) that has digits
 _LEAST = 1e-300
-_LEAST_ODDS = np.log(_LEAST) / 2  # far below 1e-3: where a rough surface lets go at once it takes that to find 1e-3
+# far below those of 1e-3: where a rough surface lets go at once they are needed to find it
+_LEAST_ODDS = -345.0
 _ANCHOR_SPEEDS = np.linspace(-5.0, 11.0, 17)  # ln λ about a guess of where asperities carry half the load
 _ANCHOR_NODES = 56
 _POINT_ANCHOR_SPEEDS = np.linspace(-2.2, 2.0, 18)  # in the unit of the cylinder, from its half load

@@ -295,7 +295,7 @@ def test_smooth_films_between_and_below_their_points():
 
 
 def test_speeds_are_counted_forwards_where_rough_skin_lets_go_at_once():
-    """Roughness of many times the decay length under a light ball: the load fraction falls from 5 % to e^-23 while λ grows e-fold."""
+    """Roughness of many decay lengths under a light ball: the load fraction falls from 5 % to e^-23 while λ grows e-fold."""
     rough = {
         "young_modulus_layer": 1.2e9, "young_modulus_bulk": 7e4, "rms_height": 76e-6, "sphere_radius": 1e-2,
         "normal_force": 5.6e-3, "layer_thickness": 173e-6,
