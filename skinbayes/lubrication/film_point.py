@@ -22,7 +22,8 @@ TERMS = 6
 """Polynomials of the end of the drag."""
 
 _SKIPPED = 12  # of the slowest speeds of a smooth cylinder: thinner than cells resolve; each output is a power of λ there
-_CELLS = 500
+_CELLS, _CELLS_WITH_END = 800, 500  # with an end the films of each of the ends are solved
+_PART = 4  # speeds that share a grid: none holds the edges of thin and of thick films
 
 
 def log_end(
@@ -69,9 +70,13 @@ def smooth_point_films(low: float, high: float, *, endless: bool = True) -> Smoo
     found = np.empty((4, TERMS, number.size))
     smooth = transport_of(None, None, 1.0, 1.0)
     for group in [ends] if endless else np.split(ends, TERMS):
-        sweeps = point_sweeps(
-            number, number > 0, no_asperities, smooth, rough=0.0, tail=0.0, end=float(group.max()), cells=_CELLS,
-            endless=endless,
+        sweeps = (
+            (part[rows], grid, film, pressure)
+            for part in np.array_split(np.arange(number.size), number.size // _PART)
+            for rows, grid, film, pressure in point_sweeps(
+                number[part], number[part] > 0, no_asperities, smooth, rough=0.0, tail=0.0, end=float(group.max()),
+                cells=_CELLS if endless else _CELLS_WITH_END, endless=endless,
+            )
         )  # fmt: skip
         for rows, grid, film, pressure in sweeps:
             for end in group.tolist():

@@ -29,8 +29,10 @@ _MORE_NODES = (0, 17, 34)  # tried one after the other where a film is not found
 _THINNEST = (
     0.03  # of the decay length: where contact is nearly complete the separation vanishes, the film does not
 )
-_LARGEST_ODDS = 20.0  # |ln share/(1 − share)| that has digits
+_LARGEST_ODDS = 20.0  # ln share/(1 − share) that has digits
 _LEAST = 1e-300
+# far below those of 1e-3: where a rough surface lets go at once they are needed to find it
+_LEAST_ODDS = -345.0
 _ANCHOR_SPEEDS = np.linspace(-5.0, 11.0, 17)  # ln λ about a guess of where asperities carry half the load
 _ANCHOR_NODES = 56
 _POINT_ANCHOR_SPEEDS = np.linspace(-2.2, 2.0, 18)  # in the unit of the cylinder, from its half load
@@ -165,21 +167,20 @@ class Ball:
         rough = np.log(max(law.separation_at(1.0), _THINNEST * law.decay_length))
         # a regression over balls and skins, good to half a unit; the speeds reach far beyond
         log_number = 2.4 + 1.85 * rough + 0.46 * (tail - rough) + _ANCHOR_SPEEDS
-        return _anchors_of(log_number, self.outputs(log_number, _ANCHOR_NODES)[FRACTION], _LARGEST_ODDS)
+        return _anchors_of(log_number, self.outputs(log_number, _ANCHOR_NODES)[FRACTION])
 
     def point_anchors(self, cells: int) -> tuple[float, float]:
         """The same of the ball itself on few cells, ln λ being that of its cylinder."""
         half, unit = self.anchors()
         log_number = half + max(unit, _SHORTEST_UNIT) * _POINT_ANCHOR_SPEEDS
         found = self.outputs(log_number, _ANCHOR_NODES, contact=POINT, cells=cells)
-        # fractions far below 1e-3 have digits, and where they fall at once one of them has to hold the curve
-        return _anchors_of(log_number, found[FRACTION], -np.log(_LEAST) / 2)
+        return _anchors_of(log_number, found[FRACTION])
 
 
-def _anchors_of(log_number: FloatArray, log_fraction: FloatArray, most: float) -> tuple[float, float]:
-    """Where the load fraction is `HALF`, and how much further on `FAINT`; ln odds down to −``most`` are used."""
+def _anchors_of(log_number: FloatArray, log_fraction: FloatArray) -> tuple[float, float]:
+    """Where the load fraction is `HALF`, and how much further on `FAINT`."""
     odds = log_fraction - np.log(np.maximum(-np.expm1(log_fraction), 1e-16))
     wanted = [np.log(FAINT / (1 - FAINT)), np.log(HALF / (1 - HALF))]
-    useful = (odds < _LARGEST_ODDS) & (odds > -most)
+    useful = (odds < _LARGEST_ODDS) & (odds > _LEAST_ODDS)
     faint, half = PchipInterpolator(odds[useful][::-1], log_number[useful][::-1])(wanted).tolist()
     return half, faint - half

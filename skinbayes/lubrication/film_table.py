@@ -11,7 +11,7 @@ from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.lubrication.film_axes import FILM_PARAMETERS, FilmAxes, film_parameters
 from skinbayes.lubrication.film_reference import SmoothFilms
 
-VERSION = 2
+VERSION = 3
 """Of what the numbers in a table mean; tables of another version are built anew."""
 
 CENTRAL, BOUNDARY, COUETTE, PRESSURE_FLOW, MINIMUM, FRACTION = range(6)

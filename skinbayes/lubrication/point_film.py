@@ -303,12 +303,14 @@ def grid_of(
     """Grid for lubrication numbers of shape ``(K,)``; ``rough``, ``tail``: H at P_a = 1 and its decay length.
 
     It reaches as far as fluid pressure (as λ/r³), asperities (as exp(−r²/2 tail)) or the drag that is counted. The rings are
-    finest at the edge of the contact, down to the width over which the thinnest film opens; where the film of a rigid ball, which
-    is 0.6 λ wide, is wider than the contact, they are as wide as a part of it. Liquid that is not ``endless`` reaches to ``end``.
+    finest at the edge of the contact, down to the width over which the thinnest film opens, at any speed if there are asperities;
+    where the film of a rigid ball, which is 0.6 λ wide, is wider than the contact, they are as wide as a part of it. Liquid that
+    is not ``endless`` reaches to ``end``.
     """
     smallest, largest = float(number.min()), float(number.max())
     reach = max(_SHORTEST_REACH, 1.1 * end, 3 + 6 * np.sqrt(tail), 12 * largest)
-    thinnest = max(0.4 * min(smallest, 1.0) ** 0.6, rough)
+    # asperities press where the film is thinnest, in a seam at the exit narrower than the film alone would have it
+    thinnest = rough if rough > 0 else 0.4 * min(smallest, 1.0) ** 0.6
     edge = float(np.clip(2.4 * thinnest ** (2 / 3), 0.03, 0.15))
     if endless and smallest > _WIDE:
         edge = max(edge, _PART_OF_WIDTH * smallest)

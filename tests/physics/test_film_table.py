@@ -21,6 +21,7 @@ from skinbayes.lubrication import (
 )
 from skinbayes.lubrication.film import lubrication_number_per_product
 from skinbayes.lubrication.film_reference import smooth_films
+from skinbayes.lubrication.film_table import FRACTION
 from skinbayes.roughness import named_surface
 
 SHEAR_STRESS = 15e6
@@ -291,6 +292,23 @@ def test_smooth_films_between_and_below_their_points():
     value, slope = smooth(np.array([-16.0, -15.0]), range(1), slope=True)
     assert slope == pytest.approx(0.6, abs=5e-3)  # the isoviscous-elastic limit
     assert value[1] - value[0] == pytest.approx(slope[0], rel=1e-3)
+
+
+def test_speeds_are_counted_forwards_where_rough_skin_lets_go_at_once():
+    """Roughness of many decay lengths under a light ball: the load fraction falls from 5 % to e^-23 while λ grows e-fold."""
+    rough = {
+        "young_modulus_layer": 1.2e9, "young_modulus_bulk": 7e4, "rms_height": 76e-6, "sphere_radius": 1e-2,
+        "normal_force": 5.6e-3, "layer_thickness": 173e-6,
+    }  # fmt: skip
+    ranges = {name: (value, value) for name, value in rough.items()}
+    plan = FilmTablePlan(ranges, spectrum=named_surface("paper_reference"))
+    ball = plan.ball(np.log(list(rough.values())))
+    half, unit = ball.anchors()
+    fractions = np.exp(ball.outputs(half + unit * np.array([0.0, 1.0, 2.0]), 96)[FRACTION])
+    assert unit > 0.5
+    assert fractions[0] == pytest.approx(0.5, abs=0.05)
+    assert 1e-5 < fractions[1] < 0.05
+    assert fractions[2] < 1e-6
 
 
 def test_wrong_inputs_are_named():

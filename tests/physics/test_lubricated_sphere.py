@@ -4,6 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from named_fields import surface_from
 from scipy.special import ellipe, ellipk
 
 from skinbayes.contact import (
@@ -224,6 +225,19 @@ def test_factors_that_are_constant_are_another_viscosity():
     np.testing.assert_allclose(thinned, film, rtol=3e-3)
     np.testing.assert_allclose(drag.couette, plain.couette / 2, rtol=3e-3)
     np.testing.assert_allclose(drag.pressure_flow, plain.pressure_flow, rtol=3e-3)
+
+
+def test_a_rough_film_does_not_depend_on_the_speeds_it_is_asked_with():
+    """Thin film on fine roughness near the minimum of friction: asperities press in a seam at the exit that needs fine rings."""
+    skin = LayeredSkin(young_modulus_layer=8.5e6, young_modulus_bulk=33e3, layer_thickness=173e-6)
+    fine = surface_from((9e-6, 0.78, 1e3, 6.345e3, 1e9))
+    law = asperity_law(fine, skin)
+    one, several, many = (
+        films_of_ball(products, (1e-2, 1.75, 33e3 / 0.75), law, cells).asperity_load_fraction[-1]
+        for products, cells in (([0.0165], 300), ([1e-4, 0.0165], 300), ([0.0165], 1000))
+    )
+    assert one == pytest.approx(several, rel=1e-6)
+    assert one == pytest.approx(many, rel=0.015)
 
 
 def test_impossible_films_are_nan_alone():
