@@ -86,13 +86,11 @@ def plot_people(fit: FitResult, width: str | None = None) -> Figure:
                 ax.plot(middle, [i], "o", color="white", markeredgecolor=POSTERIOR, markersize=3.6)
             if scale.logarithmic:
                 ax.set_xscale("log")
-            ticks(
-                ax.xaxis,
-                scale,
-                *(float(v) for v in scale.shown(np.array([everybody.min(), everybody.max()]))),
-                most=5,
+            low, high = scale.shown(np.array([everybody.min(), everybody.max()]))
+            ticks(ax.xaxis, scale, float(low), float(high), most=5)
+            ax.set_yticks(
+                range(len(people)), [shortened(p.level, LONGEST).replace("$", r"\$") for p in people]
             )
-            ax.set_yticks(range(len(people)), [shortened(p.level, LONGEST).replace("$", r"\$") for p in people])
             ax.set_ylim(-0.7, len(people) - 0.3)
             symbol = figure_text(QUANTITIES[finding.parameter].symbol)
             ax.set_xlabel(scale.label(f"{spoken_name(finding.parameter)} {symbol}"))

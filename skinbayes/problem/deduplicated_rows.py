@@ -52,7 +52,7 @@ def distinct_rows(
     plan: Iterable[InputPlan],
     conditions: Conditions,
     tables: Tables,
-    further: Mapping[str, FloatArray] | None = None,
+    further: Mapping[str, NDArray[np.generic]] | None = None,
 ) -> DistinctRows | None:
     """Find rows of equal inputs; None if no two rows are alike.
 

@@ -64,7 +64,7 @@ class PredictingModel(BoundModel):
         if conditions is not None:
             curves = flow_curves_of(self.flow_curves, self.spec.rheology_by, rows, self.spec.path)
             tables = replace(tables, flow_curves=curves)
-            further = {} if self.populations is None else self.populations.levels_of_rows(rows)
+            further = None if self.populations is None else self.populations.levels_of_rows(rows)
             deduplicated = distinct_rows(self.planned(rows), rows, tables, further)
 
         def piece(part: FloatArray) -> dict[str, FloatArray]:

@@ -104,7 +104,7 @@ def test_the_posterior_is_that_of_quadrature_narrower_than_each_alone_and_holds_
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_an_experiment_left_out_by_weights_states_an_honest_error(seed: int) -> None:
-    """Its weights have Pareto k = 0.69: from draws of the posterior alone elpd was too high by 0.015 to 0.07, two to four errors."""
+    """Its weights have Pareto k = 0.69: from draws of the posterior alone elpd is too high by 0.015 to 0.07, 2 to 4 errors."""
     problem = two_balls()
     data, scatter = {}, {"large": 0.2, "small": 0.3}
     for name, radius in (("large", 8e-3), ("small", 3e-3)):

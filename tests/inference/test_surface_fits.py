@@ -64,7 +64,7 @@ def test_the_sampler_finds_what_quadrature_finds() -> None:
 
 
 def compared(kink: float, seed: int) -> sb.Comparison:
-    """How `compare` puts the free form and the self-affine one on a random map, from draws of walkers without the package's rules.
+    """How `compare` puts the free form and the self-affine one on a random map, from draws without the package's rules.
 
     Beyond 2e5 1/m the spectrum falls by a power of q that is ``kink`` less than before.
     """
