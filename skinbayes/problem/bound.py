@@ -292,7 +292,7 @@ class BoundModel(Posterior):
         Examples
         --------
         >>> sorted(entry.name for entry in problem.planned(problem.conditions))[:2]
-        ['frictional_shear_stress', 'hurst_exponent']
+        ['area_correction', 'frictional_shear_stress']
         """
         plan = plan_inputs(self.fixed, self.free, conditions, self.tied)
         added = {p.label for p in (*self.free, *self.fixed) if p.by == POPULATION}
