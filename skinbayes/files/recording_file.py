@@ -59,7 +59,13 @@ def recording_of_frame(frame: DataFrame, name: str, recipe: Recipe) -> Recording
     for key, column in {**recipe.columns, **recipe.label_columns}.items():
         if isinstance(column, Column) and column.value is not None:
             continue
-        place = (column.number or 0) - 1 if column.name is None else known.index(column.name) if column.name in known else -1
+        place = (
+            (column.number or 0) - 1
+            if column.name is None
+            else known.index(column.name)
+            if column.name in known
+            else -1
+        )
         if not 0 <= place < len(known):
             raise _no_column(name, column.name or f"number {column.number}", known, recipe)
         cells = frame.iloc[:, place]
@@ -87,8 +93,13 @@ def _number(layout: Layout, column: Any) -> int:
 
 
 def _no_column(where: str, name: str, known: list[str], recipe: Recipe | None) -> InputError:
-    has = ", ".join(quoted(one) for one in known[:20]) or "no names above the numbers: give a number in place of a name"
-    return InputError(f"{where}: no column {quoted(name)} (or more than one); found {has}.{suggestions(name, known)}")
+    has = (
+        ", ".join(quoted(one) for one in known[:20])
+        or "no names above the numbers: give a number in place of a name"
+    )
+    return InputError(
+        f"{where}: no column {quoted(name)} (or more than one); found {has}.{suggestions(name, known)}"
+    )
 
 
 def _recording(
@@ -102,7 +113,9 @@ def _recording(
             continue
         unit = _stated_unit(where, column, units.get(key, ""))
         values = column.sign * column.factor * (raw[key] - column.offset)
-        found[key] = convert_array(values, unit, column.si, f"{where}, column '{column.name or column.number}'")
+        found[key] = convert_array(
+            values, unit, column.si, f"{where}, column '{column.name or column.number}'"
+        )
         if column.range is not None:
             beyond = (found[key] <= column.range[0]) | (found[key] >= column.range[1])
             outside = beyond if outside is None else outside | beyond
@@ -113,7 +126,9 @@ def _recording(
     _check_time(where, time, lines)
     for key in ("tangential_force", "normal_force"):
         if np.isnan(found[key]).all():
-            raise InputError(f"{where}, column '{recipe.columns[key].name}': no value at all; expected the {key}")
+            raise InputError(
+                f"{where}, column '{recipe.columns[key].name}': no value at all; expected the {key}"
+            )
     one_a_line = lines[-1] - lines[0] == size - 1
     return Recording(
         name=where,
@@ -137,17 +152,24 @@ def _stated_unit(where: str, column: Column, written: str) -> str:
     place = f"{where}, column '{column.name or column.number}'"
     if column.unit is None:
         if not written:
-            raise InputError(f"{place}: no unit; expected one in the recipe: {column.key} = {{ …, unit = \"{column.si}\" }}")
+            raise InputError(
+                f'{place}: no unit; expected one in the recipe: {column.key} = {{ …, unit = "{column.si}" }}'
+            )
         return written
     if written and column.factor == 1.0:
         try:
-            same = np.isclose(convert_array(1.0, written, column.si, place), convert_array(1.0, column.unit, column.si, place))
+            same = np.isclose(
+                convert_array(1.0, written, column.si, place),
+                convert_array(1.0, column.unit, column.si, place),
+            )
         except InputError:
             raise InputError(
                 f"{place}: the file writes the unit [{written}], the recipe {column.unit} as {column.key}; is it the right column?"
             ) from None
         if not same:
-            raise InputError(f"{place}: the file writes the unit [{written}], the recipe {column.unit}; expected one of them")
+            raise InputError(
+                f"{place}: the file writes the unit [{written}], the recipe {column.unit}; expected one of them"
+            )
     return column.unit
 
 

@@ -19,7 +19,8 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     recipe = reduced.recipe
     rules, columns = recipe.rules, recipe.columns
     source = rules.strokes_from or next(
-        (key for key in ("position", "sliding_speed") if key in columns and columns[key].value is None), "tangential_force"
+        (key for key in ("position", "sliding_speed") if key in columns and columns[key].value is None),
+        "tangential_force",
     )
     by_way = {"position", "sliding_speed"} & {key for key in columns if columns[key].value is None}
     steady = (
@@ -29,7 +30,9 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     )
     zeros = Counter(one.tangential_zero.how.split(",")[0] for one in reduced.recordings)
     said = [
-        "each recording is one stroke" if source == "whole" else f"strokes from the {source.replace('_', ' ')}",
+        "each recording is one stroke"
+        if source == "whole"
+        else f"strokes from the {source.replace('_', ' ')}",
         f"steady part: {steady}",
         f"zero of the tangential force: {', '.join(zeros)}; of the normal force: {reduced.recordings[0].normal_zero.how}",
         f"friction coefficient: {rules.friction}",
@@ -43,7 +46,9 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     if recipe.each != ("stroke",):
         said.append(f"a row for each {' and '.join(recipe.each)}")
     if recipe.time_zero:
-        said.append(f"time counts from {recipe.time_zero:g} s, and {reduced.before_zero} rows before are left out")
+        said.append(
+            f"time counts from {recipe.time_zero:g} s, and {reduced.before_zero} rows before are left out"
+        )
     return said
 
 

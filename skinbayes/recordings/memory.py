@@ -128,9 +128,7 @@ def _density_at_zero(series: Sequence[FloatArray]) -> tuple[float, int]:
     return best[1], best[2]
 
 
-def error_of_mean(
-    residuals: FloatArray, memory: Memory, *, step: float = 0.0
-) -> MeanError:
+def error_of_mean(residuals: FloatArray, memory: Memory, *, step: float = 0.0) -> MeanError:
     """Standard error of the mean of a series with memory.
 
     With s² the variance of the residuals about a straight line and τ the memory, n_e = n/τ samples are independent, and the

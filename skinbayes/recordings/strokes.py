@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,7 +116,7 @@ def _of_motion(recording: Recording, source: str, rules: Rules) -> list[Stroke]:
             f"further than {back:.4g} m one way. Expected a minimum_length under [strokes] of the recipe that strokes exceed, "
             'or from = "whole"'
         )
-    return [_stroke(way, start, stop) for start, stop in zip(turns[:-1], turns[1:], strict=True)]
+    return [_stroke(way, start, stop) for start, stop in itertools.pairwise(turns)]
 
 
 def _stroke(way: FloatArray, start: int, stop: int) -> Stroke:
