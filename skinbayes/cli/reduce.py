@@ -56,7 +56,8 @@ def reduce(
         return
     if not files or recipe is None:
         raise InputError(
-            "reduce: expected FILES and --recipe FILE.toml; skinbayes reduce FILE --template -o recipe.toml writes one to start with"
+            "reduce: expected FILES and --recipe FILE.toml; skinbayes reduce FILE --template -o recipe.toml writes one to "
+            "start with"
         )
     from skinbayes.cli.progress import counted_progress
     from skinbayes.files.reduced import reduce_recordings, targets

@@ -12,6 +12,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.recipe import RECORDED, Column, Recipe
+from skinbayes.files.recipe_schema import LabelColumn
 from skinbayes.files.recording_text import Layout, column_number, layout_of, read_numbers
 from skinbayes.files.table import quoted
 from skinbayes.recordings import Recording
@@ -56,7 +57,8 @@ def recording_of_frame(frame: DataFrame, name: str, recipe: Recipe) -> Recording
     """A data frame whose columns a recipe names, as if it stood in a file; rows take the place of lines."""
     known = [str(column) for column in frame.columns]
     values, changing = {}, {}
-    for key, column in {**recipe.columns, **recipe.label_columns}.items():
+    named: dict[str, Column | LabelColumn] = {**recipe.columns, **recipe.label_columns}
+    for key, column in named.items():
         if isinstance(column, Column) and column.value is not None:
             continue
         place = (
@@ -122,7 +124,7 @@ def _recording(
     size = next(iter(raw.values())).size
     if size < FEWEST_SAMPLES:
         raise InputError(f"{where}: {size} samples; expected a recording of at least {FEWEST_SAMPLES}")
-    time = found["time"] if "time" in found else np.arange(size) * (recipe.interval or 1.0)
+    time: FloatArray = found["time"] if "time" in found else np.arange(size, dtype=np.float64) * (recipe.interval or 1.0)
     _check_time(where, time, lines)
     for key in ("tangential_force", "normal_force"):
         if np.isnan(found[key]).all():
@@ -164,7 +166,8 @@ def _stated_unit(where: str, column: Column, written: str) -> str:
             )
         except InputError:
             raise InputError(
-                f"{place}: the file writes the unit [{written}], the recipe {column.unit} as {column.key}; is it the right column?"
+                f"{place}: the file writes the unit [{written}], the recipe {column.unit} as {column.key}; is it the "
+                "right column?"
             ) from None
         if not same:
             raise InputError(
@@ -181,8 +184,8 @@ def _check_time(where: str, time: FloatArray, lines: Any) -> None:
     if back.size:
         i = int(back[0])
         raise InputError(
-            f"{where}, line {lines[i + 1]}: time goes from {time[i]:.9g} s to {time[i + 1]:.9g} s ({back.size} such places); expected "
-            "it to increase. If it is rounded, state sampling_rate under [file] of the recipe in place of a column of time"
+            f"{where}, line {lines[i + 1]}: time goes from {time[i]:.9g} s to {time[i + 1]:.9g} s ({back.size} such places); "
+            "expected it to increase. If it is rounded, state sampling_rate under [file] of the recipe in place of a column of time"
         )
 
 

@@ -68,7 +68,8 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
     """See how the numbers stand in a file, as far as that is not stated.
 
     The numbers begin at the first line from which on twenty lines have as many cells, the same of them numbers and at least one;
-    of separators that fit, tabs come before semicolons, commas and blanks. Names stand on the line above, or two above if that one holds units.
+    of separators that fit, tabs come before semicolons, commas and blanks. Names stand on the line above, or two above if that one
+    holds units.
 
     Raises
     ------
@@ -103,8 +104,8 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
             tuple(_unit(w) or u for w, u in zip(written, units, strict=True)), names_line,
         )  # fmt: skip
     raise InputError(
-        f"{path}: no lines of numbers found; expected a recording, as text with tabs, semicolons, commas or blanks between cells. "
-        "State separator and header_lines under [file] of the recipe"
+        f"{path}: no lines of numbers found; expected a recording, as text with tabs, semicolons, commas or blanks "
+        "between cells. State separator and header_lines under [file] of the recipe"
     )
 
 
@@ -211,8 +212,8 @@ def _decimal(
     point = next((cell for cell in written if "." in cell), None)
     if comma and point:
         raise InputError(
-            f"{path}, below line {begin}: found {comma!r} and {point!r}; expected one decimal separator: state decimal under [file] "
-            "of the recipe"
+            f"{path}, below line {begin}: found {comma!r} and {point!r}; expected one decimal separator: state decimal under "
+            "[file] of the recipe"
         )
     return "," if comma and separator != "comma" else "."
 

@@ -173,7 +173,7 @@ def reduce_recordings(
     short = [Path(str(name)).name for name in names]
     for count, (name, known) in enumerate(zip(names, short, strict=True), 1):
         recording = (
-            recording_of_frame(frames[name], str(name), plan) if frames else read_recording(name, plan)
+            recording_of_frame(frames[str(name)], str(name), plan) if frames else read_recording(name, plan)
         )
         unique = known if short.count(known) == 1 else str(name)
         object.__setattr__(recording, "name", str(name))  # messages have the path

@@ -3,18 +3,38 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
+from skinbayes.files.recipe import Recipe
 from skinbayes.files.toml_text import toml_text
+from skinbayes.recordings import ReducedRecording
 from skinbayes.recordings.words import overall_sentences
 from skinbayes.version import __version__
 
-if TYPE_CHECKING:
-    from skinbayes.files.reduced import ReducedRecordings
+
+class Reduced(Protocol):
+    """What is told of a reduction."""
+
+    @property
+    def recordings(self) -> tuple[ReducedRecording, ...]:
+        """One for each file."""
+
+    @property
+    def recipe(self) -> Recipe:
+        """By which they were reduced."""
+
+    @property
+    def sources(self) -> Mapping[str, str]:
+        """Name to sha256 of each file."""
+
+    @property
+    def before_zero(self) -> int:
+        """Rows left out because time counts from later."""
 
 
-def rule_sentences(reduced: ReducedRecordings) -> list[str]:
+def rule_sentences(reduced: Reduced) -> list[str]:
     """What was done, in words."""
     recipe = reduced.recipe
     rules, columns = recipe.rules, recipe.columns
@@ -32,7 +52,7 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     said = [
         "each recording is one stroke"
         if source == "whole"
-        else f"strokes from the {source.replace('_', ' ')}",
+        else f"strokes from the {str(source).replace('_', ' ')}",
         f"steady part: {steady}",
         f"zero of the tangential force: {', '.join(zeros)}; of the normal force: {reduced.recordings[0].normal_zero.how}",
         f"friction coefficient: {rules.friction}",
@@ -52,7 +72,7 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     return said
 
 
-def provenance_text(reduced: ReducedRecordings, sha256: str) -> str:
+def provenance_text(reduced: Reduced, sha256: str) -> str:
     """Text of a ``provenance.toml``."""
     block = reduced.recipe.block
     names = list(reduced.sources)
@@ -66,9 +86,9 @@ def provenance_text(reduced: ReducedRecordings, sha256: str) -> str:
         "where": f"Recordings {shown}",
         "how_read": f"Reduced by skinbayes {__version__} by the recipe below",
         "transformation": "; ".join(rule_sentences(reduced)),
-        "spread": "Standard error of the mean over the steady part, from the number of independent samples (an autoregression fitted "
-        "to all strokes of a recording), widened so that 1.645 of it hold 90 %; it contains the error of the zeros of the forces, "
-        "which all strokes of a recording share. It does not contain how strokes, places and people differ.",
+        "spread": "Standard error of the mean over the steady part, from the number of independent samples (an autoregression "
+        "fitted to all strokes of a recording), widened so that 1.645 of it hold 90 %; it contains the error of the zeros of the "
+        "forces, which all strokes of a recording share. It does not contain how strokes, places and people differ.",
         "caveats": [*block.caveats, *overall_sentences(reduced.recordings)],
         "sha256": sha256,
         "recipe": reduced.recipe.text,

@@ -41,7 +41,7 @@ def plot_recording(one: ReducedRecording, width: str | None = None) -> Figure:
             top=0.1,
         )
         grid = figure.add_gridspec(3, 1, height_ratios=(1.3, 0.8, 1.3), hspace=0.22)
-        force, load, friction = (figure.add_subplot(place) for place in grid)
+        force, load, friction = (figure.add_subplot(grid[place]) for place in range(3))
         view = one.preview
         for ax, values, color, label in (
             (force, view.tangential_force, BLUE, "tangential\nforce [N]"),

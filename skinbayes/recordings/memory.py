@@ -59,7 +59,8 @@ def memory_of(series: Sequence[FloatArray]) -> Memory:
 
     A straight line is taken off each series. The order is that of the smallest information criterion of Akaike; with
     coefficients a_k and variance v of what is new in a step, the density of the spectrum at frequency zero is
-    S = v/(1 + Σ a_k)² (Heidelberger & Welch 1981, 10.1145/358598.358630, use it so), and a mean of n samples has the variance S/n.
+    S = v/(1 + Σ a_k)² (Heidelberger & Welch 1981, 10.1145/358598.358630, use it so), and a mean of n samples has the
+    variance S/n.
 
     Parameters
     ----------

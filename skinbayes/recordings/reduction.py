@@ -43,8 +43,8 @@ def reduce_recording(recording: Recording, rules: Rules) -> ReducedRecording:
 
     The friction coefficient is that of the steady parts: F̄/N̄, or the mean of F/N, with F the tangential force against sliding,
     its sign such that friction is positive in most strokes. Its error is that of the mean of (F − μN)/N̄ (or of F/N), which has
-    the memory that all strokes of the recording show together (`memory_of`, `error_of_mean`); where friction repeats itself, as in
-    stick and slip, means of whole cycles take the place of samples.
+    the memory that all strokes of the recording show together (`memory_of`, `error_of_mean`); where friction repeats itself, as
+    in stick and slip, means of whole cycles take the place of samples.
 
     Parameters
     ----------

@@ -57,8 +57,8 @@ def _trend_sentences(one: ReducedRecording) -> list[str]:
         )
     if trend.scatter > DIFFERS * trend.explained:
         said.append(
-            f"Strokes scatter by {trend.scatter:.2g}, {trend.scatter / trend.explained:.1f} times what their errors explain: strokes "
-            "differ, which the noise of a model has to learn."
+            f"Strokes scatter by {trend.scatter:.2g}, {trend.scatter / trend.explained:.1f} times what their errors explain: "
+            "strokes differ, which the noise of a model has to learn."
         )
     return said
 
