@@ -71,7 +71,7 @@ def _crew(work: Callable[[Any], Any], processes: int) -> Iterator[list[_Worker]]
 
 
 class _Worker:
-    """A process that does tasks; one that dies is started again, once, and gets the same task."""
+    """A process that does tasks; one that dies is started again and gets the same task, once."""
 
     def __init__(self, work: Callable[[Any], Any]) -> None:
         self._work = work
@@ -106,13 +106,14 @@ class _Worker:
         except (EOFError, OSError):
             self._again()
             return None
+        self._died = False
         return reply
 
     def _again(self) -> None:
         """Start the process once more, with the task it was to do: a result depends on its task alone."""
         if self._died:
             raise MachineError(
-                "A worker process of the sampler died twice, perhaps for want of memory: fewer --cores need less. "
+                "A worker process died twice with the same task, perhaps for want of memory: fewer --cores need less. "
                 "(A script that samples on several cores does so under: if __name__ == '__main__'.)"
             )
         self._died = True
