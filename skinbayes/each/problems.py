@@ -54,7 +54,7 @@ def problems_of_each(
     --------
     >>> problems = problems_of_each("finger-water", "fehlberg2025-finger-stribeck", column="person")
     >>> len(problems), problems["ID01"].conditions.n_rows
-    (11, 15)
+    (11, 1)
     """
     base = _Base.of(model, settings or {})
     if column is not None and table is not None:

@@ -93,9 +93,12 @@ def fit_each(
     Examples
     --------
     >>> import skinbayes as sb
-    >>> problems = sb.problems_of_each("finger-water", column="person")
-    >>> two = {name: problems[name] for name in list(problems)[:2]}
-    >>> fits = sb.fit_each(two, seed=1, ess=400)
+    >>> data = {"person": ["A", "A", "B", "B"], "friction_coefficient": [0.4, 0.5, 0.8, 0.9]}
+    >>> problem = sb.build_problem(
+    ...     "constant", data, parameters={"typical_friction_coefficient": {"uniform": [0, 2]}},
+    ...     noise={"family": "gaussian", "noise_scale": 0.1},
+    ... )  # fmt: skip
+    >>> fits = sb.fit_each(sb.problems_of_each(problem, column="person"), seed=1, ess=400)
     >>> fits.sentence(), fits.table().shape[0]
     ('2 fits: all converged.', 2)
     """

@@ -124,7 +124,9 @@ def _recording(
     size = next(iter(raw.values())).size
     if size < FEWEST_SAMPLES:
         raise InputError(f"{where}: {size} samples; expected a recording of at least {FEWEST_SAMPLES}")
-    time: FloatArray = found["time"] if "time" in found else np.arange(size, dtype=np.float64) * (recipe.interval or 1.0)
+    time: FloatArray = (
+        found["time"] if "time" in found else np.arange(size, dtype=np.float64) * (recipe.interval or 1.0)
+    )
     _check_time(where, time, lines)
     for key in ("tangential_force", "normal_force"):
         if np.isnan(found[key]).all():
@@ -185,7 +187,8 @@ def _check_time(where: str, time: FloatArray, lines: Any) -> None:
         i = int(back[0])
         raise InputError(
             f"{where}, line {lines[i + 1]}: time goes from {time[i]:.9g} s to {time[i + 1]:.9g} s ({back.size} such places); "
-            "expected it to increase. If it is rounded, state sampling_rate under [file] of the recipe in place of a column of time"
+            "expected it to increase. If it is rounded, state sampling_rate under [file] of the recipe in place of a "
+            "column of time"
         )
 
 

@@ -68,8 +68,8 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
     """See how the numbers stand in a file, as far as that is not stated.
 
     The numbers begin at the first line from which on twenty lines have as many cells, the same of them numbers and at least one;
-    of separators that fit, tabs come before semicolons, commas and blanks. Names stand on the line above, or two above if that one
-    holds units.
+    of separators that fit, tabs come before semicolons, commas and blanks. Names stand on the line above, or two above if
+    that one holds units.
 
     Raises
     ------

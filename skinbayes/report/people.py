@@ -35,7 +35,8 @@ def contrast_sentence(contrast: Contrast) -> str:
     name = spoken_name(contrast.parameter)
     compared = f"{contrast.level} {'over' if contrast.kind == 'ratio' else 'less'} {contrast.reference}"
     said = (
-        f"{name[:1].upper()}{name[1:]}, {compared} ({contrast.column}): {quantity(middle, contrast.unit)} for the median, with 90 % "
+        f"{name[:1].upper()}{name[1:]}, {compared} ({contrast.column}): {quantity(middle, contrast.unit)} for the median, with "
+        "90 % "
         f"probability between {interval(low, high, contrast.unit, typical=middle, joint=' and ')}; it is "
         f"{'lower' if lower else 'higher'} with {contrast.level} with a probability of {_probability(probable)}."
     )
