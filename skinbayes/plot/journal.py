@@ -15,6 +15,9 @@ FORMATS = ("pdf", "svg", "png")
 DENSITY = 600
 """Pixels of an inch of a PNG, as journals ask for drawings of lines."""
 
+LARGEST = 9.0
+"""Largest letters, point: on screens they may be larger."""
+
 EDGE = 0.02
 """White above and below what is drawn, inch."""
 
@@ -31,6 +34,7 @@ def journal_file(figure: Figure, form: str) -> bytes:
     form : one of :data:`FORMATS`
     """
     from matplotlib import rc_context
+    from matplotlib.text import Text
     from matplotlib.transforms import Bbox
 
     if not figure.get_suptitle().startswith(NOT_CONVERGED):
@@ -39,6 +43,9 @@ def journal_file(figure: Figure, form: str) -> bytes:
     buffer = io.BytesIO()
     with look(width), rc_context({"pdf.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": "skinbayes"}):
         figure.canvas.draw()
+        for text in figure.findobj(Text):
+            if text.get_fontsize() > LARGEST:
+                text.set_fontsize(LARGEST)
         drawn = figure.get_tightbbox()
         metadata = {
             "pdf": {"CreationDate": None, "Creator": None, "Producer": None},

@@ -12,6 +12,7 @@ from skinbayes.fit.predicted import is_logarithmic, row_names
 from skinbayes.plot.discrepancy import curves_of
 from skinbayes.plot.numbers import quantity
 from skinbayes.plot.predictive import LEVELS
+from skinbayes.problem.covariates import factor_key
 from skinbayes.statistics.quantiles import finite_quantiles
 from skinbayes.vocabulary import QUANTITIES
 
@@ -123,6 +124,11 @@ def curve_at_row(
     }
     tables = replace(problem.tables, flow_curves=None)
     grid = profile.grid({name: value[:, 0] for name, value in inputs.items()}, problem.tables.at_row(row))
+    for covariate in problem.spec.covariates:
+        key = factor_key(covariate.acts_on) if covariate.acts_on in problem.observables else covariate.acts_on
+        if covariate.column == profile.abscissa and key in inputs:  # what acts as a power runs along the curve too
+            exponent = given[f"covariate_exponent[{covariate.name}]"]
+            inputs[key] = inputs[key] * (grid / problem.conditions.covariates[covariate.column][row]) ** exponent
     found = problem.evaluate({**inputs, profile.abscissa: grid[np.newaxis]}, tables)[profile.ordinate]
     return grid, np.array(np.broadcast_to(found, (len(theta), len(grid))))
 
