@@ -24,7 +24,7 @@ HOSTILE = r"a_b & 50 % \input{x} #1 $y ~^ {皮} <b> | *z* [c]"
 def fit() -> sb.Fit:
     """Eleven loads, weighted draws of the prior."""
     problem = sb.load_problem("finger-water")
-    before = problem.draw_prior(np.random.default_rng(1), 4000)
+    before = problem.draw_prior(np.random.default_rng(1), 500)
     return sb.Fit.from_draws(problem, before, log_weights=problem.log_likelihood(before))
 
 
@@ -93,12 +93,12 @@ def test_a_fit_that_has_not_converged_says_so_in_its_figure_and_no_other_has_a_t
 
 def test_several_figures_go_into_a_folder(capsys: pytest.CaptureFixture[str], place: Path) -> None:
     names = ("predictive", "prior-posterior")
-    outcome = run(capsys, "plot", place / "fit.nc", *names, "--format", "png", "-o", place / "figs", "--json")
+    outcome = run(capsys, "plot", place / "fit.nc", *names, "--format", "svg", "-o", place / "figs", "--json")
     assert outcome.status == 0
     written = outcome.document()["figures"]
-    assert [Path(written[name]["file"]).name for name in names] == ["predictive.png", "prior-posterior.png"]
+    assert [Path(written[name]["file"]).name for name in names] == ["predictive.svg", "prior-posterior.svg"]
     assert all(Path(entry["file"]).stat().st_size and entry["caption"] for entry in written.values())
-    again = run(capsys, "plot", place / "fit.nc", "predictive", "-o", place / "figs" / "predictive.png")
+    again = run(capsys, "plot", place / "fit.nc", "predictive", "-o", place / "figs" / "predictive.svg")
     assert again.status == 2 and "exists already" in again.errors
 
 
