@@ -111,8 +111,8 @@ def _data(fit: Fit) -> Iterator[Drawing]:
         "data", plot_data, f"Data and model against {name}",
         f"Measured values against {name}, over what the fitted model predicts.",
         "Dots are measured. Lines are medians of the model, bands around them hold 90 % of the posterior (a darker one half). "
-        "Pale bars, where there are any, hold 90 % of what repeated measurements would give: nine dots in ten should lie on them, on "
-        f"both sides all along the axis.{_apart(fit, found[0])}",
+        "Pale bars, where there are any, hold 90 % of what repeated measurements would give: nine dots in ten should lie on "
+        f"them, on both sides all along the axis.{_apart(fit, found[0])}",
     )  # fmt: skip
 
 
