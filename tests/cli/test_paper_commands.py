@@ -77,7 +77,7 @@ def test_an_svg_has_its_width_and_letters_of_journal_size(
         drawn = [
             text for ax in figure.axes for text in (ax.xaxis.label, ax.yaxis.label, *ax.get_xticklabels())
         ]
-        assert {7.0 <= text.get_fontsize() <= 9.0 for text in drawn} == {True}
+        assert all(7.0 <= float(text.get_fontsize()) <= 9.0 for text in drawn)
 
 
 def test_a_fit_that_has_not_converged_says_so_in_its_figure_and_no_other_has_a_title(fit: sb.Fit) -> None:

@@ -29,12 +29,13 @@ LOAD = {
 @cache
 def fitted(kind: str) -> sb.Fit:
     """Six loads, each twice; draws of the prior with weights."""
-    more: dict[str, Any] = {
+    kinds: dict[str, dict[str, Any]] = {
         "power": {"covariates": {"load": LOAD}},
         "discrepancy": {"discrepancy": {"along": "normal_force"}},
         "groups": {"covariates": {"load": LOAD}, "groups": {"person": {"half_normal": 0.3}}},
         "two": {},
-    }[kind]
+    }
+    more = kinds[kind]
     data: dict[str, Any] = {
         "normal_force [N]": FORCE * 2,
         "friction_coefficient [1]": [*FRICTION, *(1.3 * value for value in FRICTION)],
