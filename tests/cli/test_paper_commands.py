@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,6 +17,7 @@ import pytest
 from command_line import run
 
 import skinbayes as sb
+from skinbayes.fit import storage
 
 HOSTILE = r"a_b & 50 % \input{x} #1 $y ~^ {皮} <b> | *z* [c]"
 
@@ -24,7 +26,7 @@ HOSTILE = r"a_b & 50 % \input{x} #1 $y ~^ {皮} <b> | *z* [c]"
 def fit() -> sb.Fit:
     """Eleven loads, weighted draws of the prior."""
     problem = sb.load_problem("finger-water")
-    before = problem.draw_prior(np.random.default_rng(1), 500)
+    before = problem.draw_prior(np.random.default_rng(1), 200)
     return sb.Fit.from_draws(problem, before, log_weights=problem.log_likelihood(before))
 
 
@@ -34,6 +36,15 @@ def place(fit: sb.Fit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("paper")
     fit.save(folder / "fit.nc")
     return folder
+
+
+READ = cache(storage.load_any_fit)
+
+
+@pytest.fixture(autouse=True)
+def read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reading a run takes most of the time of these commands: each is read once."""
+    monkeypatch.setattr(storage, "load_any_fit", READ)
 
 
 def test_names_of_figures_are_listed(capsys: pytest.CaptureFixture[str], place: Path) -> None:
@@ -72,7 +83,7 @@ def test_an_svg_has_its_width_and_letters_of_journal_size(
     from skinbayes.plot.journal import journal_file
 
     for width in ("84 mm", "174 mm"):
-        figure = fit.plot_data(width)
+        figure = fit.plot_prior_posterior(width)
         journal_file(figure, "svg")
         drawn = [
             text for ax in figure.axes for text in (ax.xaxis.label, ax.yaxis.label, *ax.get_xticklabels())
@@ -86,7 +97,7 @@ def test_a_fit_that_has_not_converged_says_so_in_its_figure_and_no_other_has_a_t
     sampling = fit.provenance["sampling"]
     for converged in (True, False):
         one = replace(fit, provenance={**fit.provenance, "sampling": {**sampling, "converged": converged}})
-        figure = one.plot_data("84 mm")
+        figure = one.plot_predictive("84 mm")
         journal_file(figure, "pdf")
         assert bool(figure.get_suptitle()) is not converged
 
