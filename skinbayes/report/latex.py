@@ -39,8 +39,8 @@ def latex_text(text: str) -> str:
     --------
     >>> latex_text("50 % of σ_f, 3 × 10⁻⁴ m² & more")
     '50 \\\\% of $\\\\sigma_{\\\\mathrm{f}}$, 3 $\\\\times$ 10$^{-4}$ m$^{2}$ \\\\& more'
-    >>> latex_text("a_b\\\\input{x}"), latex_text("皮")
-    ('a\\\\_b\\\\textbackslash{}input\\\\{x\\\\}', '[U+76AE]')
+    >>> latex_text("ab_c\\\\input{x}"), latex_text("皮")
+    ('ab\\\\_c\\\\textbackslash{}input\\\\{x\\\\}', '[U+76AE]')
     """
     text = " ".join(text.split())
     pieces, end = [], 0
