@@ -124,11 +124,13 @@ def curve_at_row(
     }
     tables = replace(problem.tables, flow_curves=None)
     grid = profile.grid({name: value[:, 0] for name, value in inputs.items()}, problem.tables.at_row(row))
+    # what acts as a power of the abscissa runs along the curve too
     for covariate in problem.spec.covariates:
         key = factor_key(covariate.acts_on) if covariate.acts_on in problem.observables else covariate.acts_on
-        if covariate.column == profile.abscissa and key in inputs:  # what acts as a power runs along the curve too
+        if covariate.column == profile.abscissa and key in inputs:
             exponent = given[f"covariate_exponent[{covariate.name}]"]
-            inputs[key] = inputs[key] * (grid / problem.conditions.covariates[covariate.column][row]) ** exponent
+            at_row = problem.conditions.covariates[covariate.column][row]
+            inputs[key] = inputs[key] * (grid / at_row) ** exponent
     found = problem.evaluate({**inputs, profile.abscissa: grid[np.newaxis]}, tables)[profile.ordinate]
     return grid, np.array(np.broadcast_to(found, (len(theta), len(grid))))
 
