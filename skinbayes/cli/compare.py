@@ -17,6 +17,7 @@ from skinbayes.cli.output import (
     say,
 )
 from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
+from skinbayes.errors import InputError
 
 
 @click.command()
@@ -37,6 +38,11 @@ from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
     "--no-refit",
     is_flag=True,
     help="Do not sample anew without what importance sampling cannot leave out, and without each datum if there are few.",
+)
+@click.option(
+    "--refit",
+    is_flag=True,
+    help="Sample anew however long it takes; else no more than 8,000 data in all such fits of a model together.",
 )
 @click.option(
     "--leave-out",
@@ -66,6 +72,7 @@ def compare(
     cores: int,
     output: str,
     no_refit: bool,
+    refit: bool,
     leave_out: tuple[str, ...],
     nested: bool,
     sensitivity: bool,
@@ -90,6 +97,9 @@ def compare(
     from skinbayes.comparison.tables import EXPLAINED, comparison_tables
     from skinbayes.report import write_comparison
 
+    if refit and no_refit:
+        raise InputError("compare: found --refit and --no-refit; expected one of them")
+    anew = True if refit else False if no_refit else None
     page = None if report is None else Path(report)
     if page is not None:
         refuse_other_files(page)
@@ -102,7 +112,7 @@ def compare(
     with named_progress("nested sampling of") as told:
         checks = tuple(cross_check(fit, told) for fit in fits if nested)
     with counted_progress("refits") as progress:
-        compared = compare_fits(fits, not no_refit, leave_out, progress=progress, sensitivity=sensitivity)
+        compared = compare_fits(fits, anew, leave_out, progress=progress, sensitivity=sensitivity)
     result = replace(compared, cross_checks=checks)
     if page is not None:
         write_comparison(result, fits, page)

@@ -166,12 +166,13 @@ def _without_value(problem: Any, theta: Any, prediction: dict[str, Any]) -> list
     from skinbayes.problem.possible import has_value
 
     sound = {name: has_value(name, values) for name, values in prediction.items()}
+    nowhere = not any(values.any() for values in sound.values())
     said: list[str] = []
     for row in range(problem.conditions.n_rows):
         lacking = [name for name, values in sound.items() if not values[row]]
         if lacking:
             # reasons take an evaluation each, and only the first ones are shown
-            why = problem.explain(theta, row) if len(said) < _MOST_SENTENCES else []
+            why = problem.explain(theta, row) if len(said) < (1 if nowhere else _MOST_SENTENCES) else []
             because = " ".join(why) or "these inputs lie outside the forward model's range"
             others = f" (nor have {len(lacking) - 1} others)" if len(lacking) > 1 else ""
             said.append(f"{lacking[0]} has no finite value at row {row + 1}{others}: {because}")

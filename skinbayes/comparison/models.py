@@ -17,6 +17,7 @@ from skinbayes.comparison.verdicts import (
     Statement,
     few_levels,
     level_question,
+    not_refitted,
     plus_minus,
     pointwise_question,
     unreliable_data,
@@ -49,6 +50,7 @@ class ComparedModel:
     refitted_rows : data that were left out by sampling anew
     monte_carlo_error : standard error of ``elpd_loo`` as a number that was computed from draws
     told_apart : whether it is clearly worse than the best model
+    refits_not_made : refits that would be needed and were not asked for
     """
 
     name: str
@@ -67,6 +69,7 @@ class ComparedModel:
     refitted_rows: int = 0
     monte_carlo_error: float = 0.0
     told_apart: bool = False
+    refits_not_made: int = 0
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain types."""
@@ -200,7 +203,7 @@ class Comparison:
 
 def compare(
     fits: Sequence[Fit | JointFit],
-    refit: bool = True,
+    refit: bool | None = None,
     leave_out: Sequence[str] = (),
     nested: bool = False,
     progress: RefitProgress | None = None,
@@ -217,7 +220,8 @@ def compare(
     ----------
     fits : two or more fits of the same data
     refit : sample a model anew without each datum if there are at most 20, and without whatever importance sampling cannot
-        leave out, where the model and its data are at hand
+        leave out, where the model and its data are at hand; None leaves refits that are many, of many data, until they are asked
+        for with True (more than 8,000 data in all refits of a model together)
     leave_out : blocks of rows to be left out too: ``"normal_force in 3"``, thirds of the rows along a column, ``"in 3"`` along
         that which has the most different values, ``"order in 3"`` as they stand, ``"session"`` by value
     nested : compute ln Z of each model by nested sampling too, an independent check
@@ -297,6 +301,7 @@ def compare_scores(scores: Sequence[Scores], grouped: tuple[str, ...] = ()) -> C
                 refitted_rows=len(entry.single.refitted),
                 monte_carlo_error=entry.single.monte_carlo_error,
                 told_apart=gap.sign != 0,
+                refits_not_made=entry.refits_not_made,
             )
         )
     models.sort(key=lambda model: -model.elpd_loo)
@@ -308,6 +313,7 @@ def on_sampling(models: Iterable[ComparedModel], rows: int) -> list[Statement]:
     said = []
     for model in models:
         said += unreliable_data(model.name, model.unreliable_rows, model.refitted_rows, rows)
+        said += not_refitted(model.name, model.refits_not_made, rows)
         for left_out in model.left_out.values():
             said += unreliable_levels(model.name, left_out)
         if not model.converged:

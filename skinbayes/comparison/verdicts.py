@@ -94,6 +94,20 @@ def unreliable_data(name: str, unreliable: int, refitted: int, count: int) -> li
     return said
 
 
+def not_refitted(name: str, refits: int, count: int) -> list[Statement]:
+    """What was left undone because it takes long, and how to ask for it."""
+    if not refits:
+        return []
+    times = "1 refit" if refits == 1 else f"{refits} refits"
+    return [
+        Statement(
+            f"'{name}': {times} of {count} data {'was' if refits == 1 else 'were'} not made, each of which takes about as long "
+            "as the fit: --refit, in Python refit=True, makes them.",
+            DOUBT,
+        )
+    ]
+
+
 def unreliable_levels(name: str, left_out: LeftOut) -> list[Statement]:
     """Sentences on levels whose score is doubtful, and on those that were fitted anew."""
     said = []

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skinbayes.arrays import BoolArray, FloatArray
 from skinbayes.contact import cylinder_of_sphere
@@ -178,12 +180,14 @@ def numbered_flow_curves(tables: Tables) -> tuple[FloatArray, Tables]:
 
 def explain(found: dict[str, FloatArray]) -> list[str]:
     """Why points of a curve that was solved are missing or doubtful."""
-    said = []
-    for name, reason in (REASONS_FOR_NO_PREDICTION | FLAGS).items():
-        count, total = int(np.count_nonzero(found[name])), found[name].size
-        if count:
-            said.append(f"{count} of {total} points: {reason}.")
-    return said
+    return counted(found, REASONS_FOR_NO_PREDICTION | FLAGS)
+
+
+def counted(found: Mapping[str, NDArray[Any]], meanings: Mapping[str, str]) -> list[str]:
+    """How many points each meaning applies to; a sentence for each that applies to any."""
+    counts = {meaning: np.count_nonzero(found[name]) for name, meaning in meanings.items()}
+    total = max(values.size for values in found.values())
+    return [f"{count} of {total} points: {meaning}." for meaning, count in counts.items() if count]
 
 
 def film_flags(inputs: Inputs, products: FloatArray) -> dict[str, BoolArray]:

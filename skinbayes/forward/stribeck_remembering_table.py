@@ -115,6 +115,7 @@ def prepare(
         model,
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
+        explain=tabulated.explain,
         abscissa=tabulated.abscissa,
         accuracy=f"Friction is read from a table of films of a {theory.contact} contact at the moduli of the frequency v/b, with "
         f"a correction for the memory of the tissue; {said}. Beyond the table, which holds all but the tails of the priors, "

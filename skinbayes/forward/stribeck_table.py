@@ -16,7 +16,9 @@ from skinbayes.forward.pad import AREA_DEFAULTS, PAD, check_one_inlet, film_coun
 from skinbayes.forward.stribeck_direct import (
     BALL,
     FIELDS,
+    FLAGS,
     Theory,
+    counted,
     film_flags,
     limit_of,
     speed_viscosity_product_of,
@@ -49,6 +51,8 @@ AFTERWARDS = (
 
 AREA = ("nominal_contact_area", *AREA_DEFAULTS)
 """Inputs that say how wide a pad touches."""
+
+_MISSING = "the table of films ends before"
 
 HELD = (*FILM_PARAMETERS, *HOMOGENEOUS_PARAMETERS[:1])
 """Inputs that are axes of the table, if they vary."""
@@ -91,6 +95,11 @@ class TabulatedStribeck:
             **{name: np.broadcast_to(flag, shape) for name, flag in film_flags(inputs, products).items()},
             "shear_rate_unmeasured": found["shear_rate_unmeasured"] > 0,
         }
+
+    def explain(self, inputs: Inputs, tables: Tables) -> list[str]:
+        """What the flags say, counted, and how many points the table does not hold: no film is solved for it."""
+        missing = ~np.isfinite(self.evaluate(inputs, tables)["friction_coefficient"])
+        return counted({"missing": missing, **self.flags(inputs, tables)}, {"missing": _MISSING, **FLAGS})
 
     def abscissa(self, inputs: Inputs, tables: Tables) -> FloatArray:
         """Speed times the viscosity in the film, N/m, ``(B, N)``."""
@@ -215,6 +224,7 @@ def prepare(
         model,
         evaluate=tabulated.evaluate,
         flags=tabulated.flags,
+        explain=tabulated.explain,
         abscissa=tabulated.abscissa,
         accuracy=f"Friction is read from a table of films of a {theory.contact} contact; at {table.held_out_count} places that "
         f"it was not made from it differs from the film solver by {middle:.2g} % in the median, {far:.2g} % at the 99th "

@@ -41,7 +41,7 @@ def predicted_everywhere(problem: PredictingModel, draws: FloatArray) -> tuple[N
             )
             many = "row" if rows.size == 1 else "rows"
             why = (
-                " ".join(problem.explain(draws[:1]))
+                " ".join(problem.explain(draws[:1], int(rows[0])))
                 or "inputs there lie outside the range of the forward model"
             )
             return usable, f"{name} has no value at {many} {listed}: {why}"

@@ -155,14 +155,16 @@ class PredictingModel(BoundModel):
         []
         """
         batch, _ = self._batch(theta)
-        if self.forward.explain is None:
+        # of all rows what a table knows will do; why one of them has no value is for the physics to say
+        explain = (self.model if row is None else self.forward).explain
+        if explain is None:
             return []
         inputs, tables = self.inputs(batch), self.tables
         if row is not None:
             inputs = {n: v[:, [row]] if v.shape[1] > 1 else v for n, v in inputs.items()}
             tables = tables.at_row(row)
         with explained(self.spec.path, FAILED), np.errstate(all="ignore"):
-            return self.forward.explain(inputs, tables)
+            return explain(inputs, tables)
 
     def flags(self, theta: ArrayLike) -> dict[str, NDArray[np.bool_]]:
         """Where predictions lie at the edge of what the theory is good for.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,10 @@ from mutated_models import SHIPPED, mutated, to_toml
 
 from skinbayes.cli.main import cli
 from skinbayes.errors import InputError
-from skinbayes.forward import stribeck_table
+from skinbayes.forward import stribeck_remembering_table, stribeck_table
 from skinbayes.lubrication import FilmTable, FilmTablePlan, build_film_table
+from skinbayes.lubrication.viscoelastic_correction import MemoryCorrection
+from skinbayes.lubrication.viscoelastic_table import MemoryPlan, build_memory_correction
 from skinbayes.roughness import named_surface
 
 COMMANDS = (["show"], ["template"], ["predict"], ["prior", "--draws", "100"], ["check"])
@@ -31,16 +34,20 @@ def refused(*command: str) -> str | None:
 
 @pytest.fixture
 def one_film_table(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """One small table of films instead of one for each prior, which would take minutes each."""
+    """One small table of films, and a correction of it, instead of those of each prior, which would take minutes each."""
     ball = {
         "young_modulus_layer": 7e6, "young_modulus_bulk": 2e4, "rms_height": 22.4e-6, "sphere_radius": 1e-2, "normal_force": 1.0,
         "layer_thickness": 173e-6,
     }  # fmt: skip
     ranges = {name: (value, value) for name, value in ball.items()}
-    table: FilmTable = build_film_table(
-        FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), speeds=8, nodes=32, checked=0)
-    )
+    films = FilmTablePlan(ranges, spectrum=named_surface("paper_reference"), speeds=8, nodes=32, checked=0)
+    table: FilmTable = build_film_table(films)
+
+    def correction(plan: MemoryPlan, *a: object, **k: object) -> MemoryCorrection:
+        return build_memory_correction(replace(plan, films=films, counts=(2, 1), checked=0), table)
+
     monkeypatch.setattr(stribeck_table, "build_film_table", lambda *a, **k: table)
+    monkeypatch.setattr(stribeck_remembering_table, "build_memory_correction", correction)
     monkeypatch.setenv("SKINBAYES_CACHE", "")
     yield
 

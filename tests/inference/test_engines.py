@@ -80,7 +80,7 @@ def test_ensembles_against_the_exact_answer(dimension, ridge) -> None:
         (2, 100.0, 50, 200),
         pytest.param(3, 1.0, 250, 1000, marks=pytest.mark.slow),
         pytest.param(3, 300.0, 250, 1000, marks=pytest.mark.slow),
-        pytest.param(5, 300.0, 250, 1000, marks=pytest.mark.slow),
+        pytest.param(5, 300.0, 250, 500, marks=pytest.mark.slow),
     ],
 )
 def test_nested_sampling_against_the_exact_answer(dimension, ridge, live, ess) -> None:

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from scipy import stats
 from scipy.special import logsumexp
 
-from skinbayes.comparison import compare
+from skinbayes.comparison import compare, scores
 from skinbayes.comparison.parts import single_data
 from skinbayes.comparison.scores import LeftOut, LeftOutLevel, difference, score
 from skinbayes.comparison.verdicts import unreliable_levels
@@ -99,7 +99,7 @@ def outlying(folder: Path) -> tuple[Design, Path]:
     return design, design.write(folder, "{ half_normal = 0.5 }", "0.05", "outlying")
 
 
-def test_refits_where_importance_sampling_fails(tmp_path: Path) -> None:
+def test_refits_where_importance_sampling_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     design, path = outlying(tmp_path)
     fit = sample(load_problem(path), **QUICK)
     plain = compare([fit, fit], refit=False)
@@ -107,6 +107,12 @@ def test_refits_where_importance_sampling_fails(tmp_path: Path) -> None:
     assert before.unreliable == ["p2"]
     assert any("refits without them would tell" in sentence for sentence in plain.sentences())
     calls: list[tuple[int, int]] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(scores, "MOST_REFITTED_DATA", 23)  # one refit of 24 data is too many to be made unasked
+        patch.setattr(scores, "_refitted", None)
+        unasked = compare([fit, fit])
+    assert unasked.models[0].refits_not_made == 1 and unasked.models[0].left_out["person"] == before
+    assert any("1 refit of 24 data was not made" in sentence for sentence in unasked.sentences())
     found = score(fit, refit=True, progress=lambda done, total: calls.append((done, total)))
     left_out = found.left_out["person"]
     assert left_out.refitted == ["p2"] and left_out.unreliable == []
