@@ -44,7 +44,7 @@ def journal_file(figure: Figure, form: str) -> bytes:
     with look(width), rc_context({"pdf.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": "skinbayes"}):
         figure.canvas.draw()
         for text in figure.findobj(Text):
-            if text.get_fontsize() > LARGEST:
+            if float(text.get_fontsize()) > LARGEST:
                 text.set_fontsize(LARGEST)
         drawn = figure.get_tightbbox()
         metadata = {

@@ -85,7 +85,7 @@ def _symbol(letter: str) -> str | None:
     if letter.startswith("Δ") and len(letter) > 1:
         rest = _symbol(letter[1:])
         return None if rest is None else rf"\Delta {rest}"
-    base, *accents = unicodedata.normalize("NFD", letter)
+    base, *accents = list(unicodedata.normalize("NFD", letter))
     known = rf"\{_GREEK[base]}" if base in _GREEK else base if base.isascii() else None
     if known is None or any(accent not in _ACCENTS for accent in accents):
         return None
