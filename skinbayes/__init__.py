@@ -17,13 +17,15 @@ from typing import TYPE_CHECKING, Any
 from skinbayes.version import __version__
 
 __all__ = ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily", "Problem", "Quantity",
-           "__version__", "build_joint_problem", "build_problem", "calibrate", "compare", "emulated", "fit_spectrum",
-           "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem", "load_problem", "reduce_recordings",
-           "register_engine", "register_forward_model", "register_noise", "register_quantity", "sample"]  # fmt: skip
+           "__version__", "build_joint_problem", "build_problem", "calibrate", "compare", "emulated", "fit_each",
+           "fit_spectrum", "load_dataset", "load_fit", "load_joint_fit", "load_joint_problem", "load_problem",
+           "problems_of_each", "reduce_recordings", "register_engine", "register_forward_model", "register_noise",
+           "register_quantity", "sample"]  # fmt: skip
 
 if TYPE_CHECKING:
     from skinbayes.calibration import calibrate
     from skinbayes.comparison import compare
+    from skinbayes.each import fit_each, problems_of_each
     from skinbayes.errors import InputError
     from skinbayes.files.dataset import Dataset, load_dataset
     from skinbayes.files.reduced import reduce_recordings
@@ -56,6 +58,8 @@ _HOME = {
     "calibrate": "skinbayes.calibration",
     "compare": "skinbayes.comparison",
     "emulated": "skinbayes.forward",
+    "fit_each": "skinbayes.each",
+    "problems_of_each": "skinbayes.each",
     "fit_spectrum": "skinbayes.fit",
     "load_dataset": "skinbayes.files.dataset",
     "load_fit": "skinbayes.fit",

@@ -8,3 +8,6 @@ EFFECTIVE_SAMPLE_SIZE = 2000
 
 MAX_STEPS = 10_000
 """Of each ensemble of walkers, converged or not."""
+
+MOST_DRAWS = 1000
+"""Posterior draws that are kept of each of many fits."""

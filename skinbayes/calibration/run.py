@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from skinbayes.calibration.directory import CalibrationDirectory
+from skinbayes.calibration.directory import CALIBRATION
 from skinbayes.calibration.result import Calibration, OddsCalibration
 from skinbayes.calibration.simulation import RANKED_DRAWS, Simulated, Simulation
 from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
 from skinbayes.errors import InputError
 from skinbayes.fit.assemble import require_data
+from skinbayes.fit.result_folder import ResultFolder
 from skinbayes.sampling.many_tasks import done_tasks
 from skinbayes.sampling.options import whole
 
@@ -126,9 +127,11 @@ def calibrate(
     }  # fmt: skip
     with ExitStack() as stack:
         kept = (
-            None if directory is None else stack.enter_context(CalibrationDirectory(Path(directory), asked))
+            None
+            if directory is None
+            else stack.enter_context(ResultFolder(Path(directory), CALIBRATION, asked))
         )
-        found: dict[int, Simulated] = {} if kept is None else kept.done
+        found: dict[Hashable, Simulated] = {} if kept is None else kept.done
         missing = [number for number in range(simulations) if number not in found]
         done = simulations - len(missing)
         for _, simulated in done_tasks(simulation, missing, cores, scheduler):

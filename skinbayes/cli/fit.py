@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from skinbayes.cli.fit_each import print_each
 from skinbayes.cli.fit_output import print_fit
 from skinbayes.cli.options import (
     data_of,
@@ -21,7 +22,7 @@ from skinbayes.cli.options import (
 )
 from skinbayes.cli.output import EXIT_DONE, EXIT_INTERRUPTED, EXIT_NOT_CONVERGED, print_json, say
 from skinbayes.cli.runs import run_directory
-from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MAX_STEPS, SEED
+from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MAX_STEPS, MOST_DRAWS, SEED
 from skinbayes.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,6 +60,19 @@ if TYPE_CHECKING:
 @click.option(
     "--report", "with_report", is_flag=True, help="Also write the report page into the run directory."
 )
+@click.option(
+    "--each",
+    metavar="WHAT",
+    help="Fit many data sets, each by itself: the labels of a column (person); file, the files that --data names (or a "
+    "pattern such as 'data/*.csv'); or the lines of a table of settings, FILE.csv. --cores then share the fits.",
+)
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="With --each: let the workers of a dask scheduler do it, such as tcp://node1:8786.",
+)
+@number_option("--draws", MOST_DRAWS, 0, "With --each: posterior draws kept of each fit.")
+@click.option("--runs", is_flag=True, help="With --each: also keep a run directory of each fit.")
 @json_option
 def fit(
     model: str,
@@ -73,12 +87,38 @@ def fit(
     output: str | None,
     resume: bool,
     with_report: bool,
+    each: str | None,
+    scheduler: str | None,
+    draws: int,
+    runs: bool,
     as_json: bool,
 ) -> int:
     """Sample the posterior until it has converged.
 
     It has when autocorrelation, effective sample size and R-hat agree that enough has been sampled.
+
+    With --each the same command again goes on from where it was interrupted, and fits again what changed.
     """
+    options = _engine_options(engine_pairs)
+    if max_steps is not None:
+        options = {"max_steps": max_steps} | options
+    if each is not None:
+        if with_report:
+            raise InputError(
+                "--report: one page for one fit; with --each keep --runs, and write the page of one of them"
+            )
+        how = {
+            "seed": seed,
+            "ess": ess,
+            "cores": cores,
+            "engine": engine,
+            "scheduler": scheduler,
+            "draws": draws,
+            "runs": runs,
+        }
+        return print_each(model, each, given, pairs, output, how | options, as_json)
+    if scheduler is not None or runs or draws != MOST_DRAWS:
+        raise InputError("--scheduler, --draws and --runs are for many fits; expected --each WHAT with them")
     from skinbayes.cli.progress import fit_progress
     from skinbayes.fit import sample
     from skinbayes.problem.load import load_any_problem
@@ -86,9 +126,6 @@ def fit(
 
     problem = load_any_problem(model, data_of(model, given), settings=settings_of(pairs))
     directory = Path(output) if output else run_directory(problem.name, seed)
-    options = _engine_options(engine_pairs)
-    if max_steps is not None:
-        options = {"max_steps": max_steps} | options
     try:
         with fit_progress() as (count, progress):
             result = sample(

@@ -20,8 +20,10 @@ from skinbayes.cli.compare import compare
 from skinbayes.cli.design import design
 from skinbayes.cli.digitised import digitised
 from skinbayes.cli.fit import fit
+from skinbayes.cli.methods import methods
 from skinbayes.cli.new import new
 from skinbayes.cli.output import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_MACHINE, message
+from skinbayes.cli.plot import plot
 from skinbayes.cli.predict import predict
 from skinbayes.cli.prior import prior
 from skinbayes.cli.reduce import reduce
@@ -29,6 +31,7 @@ from skinbayes.cli.report import report
 from skinbayes.cli.reproduce import reproduce
 from skinbayes.cli.sensitivity import sensitivity
 from skinbayes.cli.spectrum import spectrum
+from skinbayes.cli.table import table
 from skinbayes.cli.template import template
 from skinbayes.errors import NO_SPACE, InputError, MachineError, RepairWarning
 from skinbayes.version import __version__
@@ -77,6 +80,9 @@ for _command in (
     design,
     calibrate,
     report,
+    plot,
+    table,
+    methods,
     reproduce,
 ):
     cli.add_command(_command)

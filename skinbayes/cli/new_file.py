@@ -21,9 +21,14 @@ def refuse_existing(paths: Sequence[Path], overwrite: bool) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """Write a UTF-8 file with line feeds, and its folder; all of it or nothing."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file and its folder; all of it or nothing."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(path, text.encode("utf-8"))
+        write_atomically(path, content)
     except OSError as error:
         # in the name that the user gave, not in that of the file on its way there
         raise OSError(error.errno, error.strerror, str(path)) from error

@@ -29,7 +29,12 @@ MOST_TOLD = 12
 @click.option(
     "-o", "--output", metavar="FILE", help="CSV to write, or a folder for data.csv; of --template the recipe."
 )
-@click.option("--report", "page", metavar="FILE.html", help="The page elsewhere.  [default: recordings.html beside the CSV]")
+@click.option(
+    "--report",
+    "page",
+    metavar="FILE.html",
+    help="The page elsewhere.  [default: recordings.html beside the CSV]",
+)
 @overwrite_option
 @json_option
 def reduce(
@@ -51,7 +56,8 @@ def reduce(
         return
     if not files or recipe is None:
         raise InputError(
-            "reduce: expected FILES and --recipe FILE.toml; skinbayes reduce FILE --template -o recipe.toml writes one to start with"
+            "reduce: expected FILES and --recipe FILE.toml; skinbayes reduce FILE --template -o recipe.toml writes one to "
+            "start with"
         )
     from skinbayes.cli.progress import counted_progress
     from skinbayes.files.reduced import reduce_recordings, targets
@@ -93,7 +99,10 @@ def _template(
         return
     say(text.rstrip("\n") if output is None else f"recipe: {output}")
     if output is not None:
-        say(f"Next: complete what stands between “ ” in {output}; then: skinbayes reduce FILES... --recipe {output} -o FOLDER", err=True)
+        say(
+            f"Next: complete what stands between “ ” in {output}; then: skinbayes reduce FILES... --recipe {output} -o FOLDER",
+            err=True,
+        )
 
 
 def _show(reduced: ReducedRecordings) -> None:

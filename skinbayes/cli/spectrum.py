@@ -320,6 +320,7 @@ def document(collection: SurfaceCollection) -> dict[str, Any]:
 
 def _file_document(one: SurfaceAnalysis) -> dict[str, Any]:
     from skinbayes.topography import HeightMap
+    from skinbayes.topography.findings import surface_findings
 
     surface, found = one.surface, one.anisotropy
     pixel = (
@@ -335,7 +336,7 @@ def _file_document(one: SurfaceAnalysis) -> dict[str, Any]:
         "plateaus": [plateau._asdict() for plateau in one.plateaus],
         "steps": list(surface.steps),
         "window": one.window,
-        "findings": one.findings(),
+        "findings": surface_findings(one),
         "surface": one.own._asdict(),
         "whole_spectrum": one.whole._asdict(),
         "in_band": one.in_band._asdict() | {"total_area_ratio": one.area_ratio_in_band},
@@ -356,6 +357,7 @@ def _file_document(one: SurfaceAnalysis) -> dict[str, Any]:
 
 def _show(collection: SurfaceCollection) -> None:
     from skinbayes.report.spectrum_page import HEADERS, collection_sentences, surface_row
+    from skinbayes.topography.findings import surface_findings
 
     print_table(("file", *HEADERS[1:]), [surface_row(one) for one in collection.surfaces], right=range(1, 9))
     for one in collection.surfaces:
@@ -364,5 +366,5 @@ def _show(collection: SurfaceCollection) -> None:
             said = [
                 f"{', '.join(one.analysis.surface.steps)}; {one.kind}; band from {band.lower} to {band.upper}."
             ]
-            print_sentences([*said, *one.analysis.findings()], one.name)
+            print_sentences([*said, *surface_findings(one.analysis)], one.name)
     print_sentences(collection_sentences(collection), "The spectrum")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -19,7 +20,13 @@ from skinbayes.recordings import Rules
 from skinbayes.units import convert_array, parse_quantity
 from skinbayes.vocabulary import QUANTITIES, lookup, spread_of, suggestions
 
-RECORDED = {"time": "s", "tangential_force": "N", "normal_force": "N", "position": "m", "sliding_speed": "m/s"}
+RECORDED = {
+    "time": "s",
+    "tangential_force": "N",
+    "normal_force": "N",
+    "position": "m",
+    "sliding_speed": "m/s",
+}
 """What a recording may hold beside other quantities, and its SI unit."""
 
 COMPUTED = ("friction_coefficient", "friction_force")
@@ -126,14 +133,18 @@ def _read(block: RecipeBlock, path: Path, text: str, where: Callable[..., str]) 
     rate = block.file.sampling_rate
     for key in ("tangential_force", "normal_force"):
         if key not in columns:
-            raise InputError(f"{where('columns')}: {key} is missing; expected {key} = {{ name = \"…\", unit = \"N\" }}")
+            raise InputError(
+                f'{where("columns")}: {key} is missing; expected {key} = {{ name = "…", unit = "N" }}'
+            )
     if ("time" in columns) == (rate is not None):
         raise InputError(
-            f"{where('columns')}: expected either a column of time or, under [file], a sampling_rate such as \"100 1/s\""
+            f'{where("columns")}: expected either a column of time or, under [file], a sampling_rate such as "100 1/s"'
         )
     for key in ("time", "tangential_force", "position"):
         if key in columns and columns[key].value is not None:
-            raise InputError(f"{where('columns', key)}: expected a column of the file, not one value for all samples")
+            raise InputError(
+                f"{where('columns', key)}: expected a column of the file, not one value for all samples"
+            )
     labels = {key: label for key, label in block.labels.items() if key != FILE_NAME}
     for key in labels:
         label_column(key, where("labels", key))
@@ -157,7 +168,9 @@ def _read(block: RecipeBlock, path: Path, text: str, where: Callable[..., str]) 
     )
 
 
-def _each(each: tuple[str, ...], labels: Mapping[str, Any], block: RecipeBlock, where: Callable[..., str]) -> tuple[str, ...]:
+def _each(
+    each: tuple[str, ...], labels: Mapping[str, Any], block: RecipeBlock, where: Callable[..., str]
+) -> tuple[str, ...]:
     kinds = ("stroke", "pair", "recording")
     pattern = block.labels.get(FILE_NAME)
     known = [*labels, *re.findall(r"\{(\w+)\}", pattern if isinstance(pattern, str) else "")]
@@ -195,7 +208,16 @@ def _column(key: str, block: RecipeBlock, where: Callable[..., str]) -> Column:
             raise InputError(f"{place}.range: found {entry.range}; expected the lower end first")
         ends = low, high
     return Column(
-        key, entry.name, entry.number, entry.unit, si, float(entry.offset), float(entry.factor), entry.sign, ends, value
+        key,
+        entry.name,
+        entry.number,
+        entry.unit,
+        si,
+        float(entry.offset),
+        float(entry.factor),
+        entry.sign,
+        ends,
+        value,
     )
 
 
@@ -205,7 +227,9 @@ def _pattern(text: str | LabelColumn | None, where: Callable[..., str]) -> re.Pa
         return None
     place = where("labels", FILE_NAME)
     if not isinstance(text, str) or not (names := re.findall(r"\{(\w+)\}", text)):
-        raise InputError(f'{place}: expected a pattern with labels in braces, such as "{{person}}-{{session}}"')
+        raise InputError(
+            f'{place}: expected a pattern with labels in braces, such as "{{person}}-{{session}}"'
+        )
     for name in names:
         if name != "_":
             label_column(name, place)
@@ -229,11 +253,17 @@ def _rules(block: RecipeBlock, where: Callable[..., str]) -> Rules:
         return found
 
     rest = block.zero.rest
-    times = None if rest is None else tuple(parse_quantity(end, "s", where=where("zero", "rest")) for end in rest)
+    times = (
+        None if rest is None else tuple(parse_quantity(end, "s", where=where("zero", "rest")) for end in rest)
+    )
     if times is not None and not times[0] < times[1]:
         raise InputError(f"{where('zero', 'rest')}: found {rest}; expected the earlier time first")
-    edges = () if block.ramp is None else tuple(value(edge, "N", "ramp", "edges") or 0.0 for edge in block.ramp.edges)
-    if any(not a < b for a, b in zip(edges[:-1], edges[1:], strict=True)):
+    edges = (
+        ()
+        if block.ramp is None
+        else tuple(value(edge, "N", "ramp", "edges") or 0.0 for edge in block.ramp.edges)
+    )
+    if any(not a < b for a, b in itertools.pairwise(edges)):
         raise InputError(f"{where('ramp', 'edges')}: expected loads that increase")
     return Rules(
         strokes_from=block.strokes.origin,
@@ -248,5 +278,8 @@ def _rules(block: RecipeBlock, where: Callable[..., str]) -> Rules:
         rest=None if times is None else (times[0], times[1]),
         friction=block.friction.coefficient,
         ramp_edges=edges,
-        minimum_normal_force=value(block.friction.minimum_normal_force, "N", "friction", "minimum_normal_force") or 0.0,
+        minimum_normal_force=value(
+            block.friction.minimum_normal_force, "N", "friction", "minimum_normal_force"
+        )
+        or 0.0,
     )

@@ -49,7 +49,9 @@ class ColumnBlock(_Strict):
     def _one_source(self) -> ColumnBlock:
         if sum(part is not None for part in (self.name, self.number, self.value)) != 1:
             raise ValueError("give either 'name' or 'number' of a column, or a 'value' for all samples")
-        if self.value is not None and (self.unit or self.offset or self.factor != 1.0 or self.sign != 1 or self.range):
+        if self.value is not None and (
+            self.unit or self.offset or self.factor != 1.0 or self.sign != 1 or self.range
+        ):
             raise ValueError("a 'value' is text with its unit and takes nothing else")
         return self
 
@@ -70,7 +72,9 @@ class LabelColumn(_Strict):
 class StrokesBlock(_Strict):
     """``[strokes]``: how strokes are found, and which are taken."""
 
-    origin: Literal["position", "sliding_speed", "tangential_force", "whole"] | None = Field(default=None, alias="from")
+    origin: Literal["position", "sliding_speed", "tangential_force", "whole"] | None = Field(
+        default=None, alias="from"
+    )
     minimum_length: str | None = None
     minimum_duration: str | None = None
     directions: Literal["both", "forward", "backward"] = "both"

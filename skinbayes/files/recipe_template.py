@@ -11,14 +11,24 @@ from skinbayes.units import converts
 
 COLUMNS = (
     ("time", "s", "", "t zeit elapsed"),
-    ("tangential_force", "N", "force along the surface, with its sign", "fx ft f_x f_t lateral tangential friction shear"),
-    ("normal_force", "N", "force onto the surface, positive under load", "fz fn f_z f_n load normal vertical"),
+    (
+        "tangential_force",
+        "N",
+        "force along the surface, with its sign",
+        "fx ft f_x f_t lateral tangential friction shear",
+    ),
+    (
+        "normal_force",
+        "N",
+        "force onto the surface, positive under load",
+        "fz fn f_z f_n load normal vertical",
+    ),
     ("position", "m", "of the slide, with its sign", "x pos position stroke displacement"),
     ("relative_humidity", "1", "", "rh humidity feuchte"),
 )
 """Key, SI unit, meaning and words by which a column may be known."""
 
-HEAD = '''\
+HEAD = """\
 # How recordings of a tribometer become friction: complete what stands between “ ”, then
 #     skinbayes reduce FILES... --recipe {name} -o glass
 format = 1
@@ -27,9 +37,9 @@ authors = ["“who measured”"]
 licence = "not stated"
 caveats = []                                  # what a user of the data has to know
 
-'''
+"""
 
-BODY = '''\
+BODY = """\
 [labels]                                      # text that tells rows apart
 # file_name = "{person}-{session}"            # parts of the file's name, without its ending
 # counterface = "glass ball"                  # the same in all recordings
@@ -59,7 +69,7 @@ coefficient = "ratio of means"                # or "mean of ratios"
 [rows]
 each = "stroke"                               # or "pair" (of directions), "recording", or labels: ["person", "session"]
 # time_zero = "30 s"                          # of the recording; rows before it are left out
-'''
+"""
 
 
 def recipe_template(name: str, recording: str | Path | None = None) -> str:
@@ -77,7 +87,12 @@ def recipe_template(name: str, recording: str | Path | None = None) -> str:
     """
     layout = None if recording is None else layout_of(Path(recording), FileBlock())
     found = {} if layout is None else _guessed(layout)
-    lines = ["[file]", *_file_lines(layout), "", "[columns]                                     # (number in the file − offset) · factor · sign, in unit"]
+    lines = [
+        "[file]",
+        *_file_lines(layout),
+        "",
+        "[columns]                                     # (number in the file − offset) · factor · sign, in unit",
+    ]
     if layout is not None and layout.names_line:
         lines.append("# the file has: " + ", ".join(header for header in layout.names if header))
     for key, unit, meaning, _ in COLUMNS:

@@ -12,6 +12,7 @@ import numpy as np
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
 from skinbayes.files.recipe import RECORDED, Column, Recipe
+from skinbayes.files.recipe_schema import LabelColumn
 from skinbayes.files.recording_text import Layout, column_number, layout_of, read_numbers
 from skinbayes.files.table import quoted
 from skinbayes.recordings import Recording
@@ -56,10 +57,17 @@ def recording_of_frame(frame: DataFrame, name: str, recipe: Recipe) -> Recording
     """A data frame whose columns a recipe names, as if it stood in a file; rows take the place of lines."""
     known = [str(column) for column in frame.columns]
     values, changing = {}, {}
-    for key, column in {**recipe.columns, **recipe.label_columns}.items():
+    named: dict[str, Column | LabelColumn] = {**recipe.columns, **recipe.label_columns}
+    for key, column in named.items():
         if isinstance(column, Column) and column.value is not None:
             continue
-        place = (column.number or 0) - 1 if column.name is None else known.index(column.name) if column.name in known else -1
+        place = (
+            (column.number or 0) - 1
+            if column.name is None
+            else known.index(column.name)
+            if column.name in known
+            else -1
+        )
         if not 0 <= place < len(known):
             raise _no_column(name, column.name or f"number {column.number}", known, recipe)
         cells = frame.iloc[:, place]
@@ -87,8 +95,13 @@ def _number(layout: Layout, column: Any) -> int:
 
 
 def _no_column(where: str, name: str, known: list[str], recipe: Recipe | None) -> InputError:
-    has = ", ".join(quoted(one) for one in known[:20]) or "no names above the numbers: give a number in place of a name"
-    return InputError(f"{where}: no column {quoted(name)} (or more than one); found {has}.{suggestions(name, known)}")
+    has = (
+        ", ".join(quoted(one) for one in known[:20])
+        or "no names above the numbers: give a number in place of a name"
+    )
+    return InputError(
+        f"{where}: no column {quoted(name)} (or more than one); found {has}.{suggestions(name, known)}"
+    )
 
 
 def _recording(
@@ -102,18 +115,24 @@ def _recording(
             continue
         unit = _stated_unit(where, column, units.get(key, ""))
         values = column.sign * column.factor * (raw[key] - column.offset)
-        found[key] = convert_array(values, unit, column.si, f"{where}, column '{column.name or column.number}'")
+        found[key] = convert_array(
+            values, unit, column.si, f"{where}, column '{column.name or column.number}'"
+        )
         if column.range is not None:
             beyond = (found[key] <= column.range[0]) | (found[key] >= column.range[1])
             outside = beyond if outside is None else outside | beyond
     size = next(iter(raw.values())).size
     if size < FEWEST_SAMPLES:
         raise InputError(f"{where}: {size} samples; expected a recording of at least {FEWEST_SAMPLES}")
-    time = found["time"] if "time" in found else np.arange(size) * (recipe.interval or 1.0)
+    time: FloatArray = (
+        found["time"] if "time" in found else np.arange(size, dtype=np.float64) * (recipe.interval or 1.0)
+    )
     _check_time(where, time, lines)
     for key in ("tangential_force", "normal_force"):
         if np.isnan(found[key]).all():
-            raise InputError(f"{where}, column '{recipe.columns[key].name}': no value at all; expected the {key}")
+            raise InputError(
+                f"{where}, column '{recipe.columns[key].name}': no value at all; expected the {key}"
+            )
     one_a_line = lines[-1] - lines[0] == size - 1
     return Recording(
         name=where,
@@ -137,17 +156,25 @@ def _stated_unit(where: str, column: Column, written: str) -> str:
     place = f"{where}, column '{column.name or column.number}'"
     if column.unit is None:
         if not written:
-            raise InputError(f"{place}: no unit; expected one in the recipe: {column.key} = {{ …, unit = \"{column.si}\" }}")
+            raise InputError(
+                f'{place}: no unit; expected one in the recipe: {column.key} = {{ …, unit = "{column.si}" }}'
+            )
         return written
     if written and column.factor == 1.0:
         try:
-            same = np.isclose(convert_array(1.0, written, column.si, place), convert_array(1.0, column.unit, column.si, place))
+            same = np.isclose(
+                convert_array(1.0, written, column.si, place),
+                convert_array(1.0, column.unit, column.si, place),
+            )
         except InputError:
             raise InputError(
-                f"{place}: the file writes the unit [{written}], the recipe {column.unit} as {column.key}; is it the right column?"
+                f"{place}: the file writes the unit [{written}], the recipe {column.unit} as {column.key}; is it the "
+                "right column?"
             ) from None
         if not same:
-            raise InputError(f"{place}: the file writes the unit [{written}], the recipe {column.unit}; expected one of them")
+            raise InputError(
+                f"{place}: the file writes the unit [{written}], the recipe {column.unit}; expected one of them"
+            )
     return column.unit
 
 
@@ -159,8 +186,9 @@ def _check_time(where: str, time: FloatArray, lines: Any) -> None:
     if back.size:
         i = int(back[0])
         raise InputError(
-            f"{where}, line {lines[i + 1]}: time goes from {time[i]:.9g} s to {time[i + 1]:.9g} s ({back.size} such places); expected "
-            "it to increase. If it is rounded, state sampling_rate under [file] of the recipe in place of a column of time"
+            f"{where}, line {lines[i + 1]}: time goes from {time[i]:.9g} s to {time[i + 1]:.9g} s ({back.size} such places); "
+            "expected it to increase. If it is rounded, state sampling_rate under [file] of the recipe in place of a "
+            "column of time"
         )
 
 

@@ -32,7 +32,9 @@ SEPARATORS = {"tab": "\t", "semicolon": ";", "comma": ",", "blanks": r"\s+"}
 _LOOKED_AT = 300_000  # bytes from the beginning
 _ROWS = 20
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?")
-_WITH_UNIT = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\)|/\s*(?P<slash>\S+)|,\s*(?P<comma>\S+))")
+_WITH_UNIT = re.compile(
+    r"(?P<name>.*?)\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\)|/\s*(?P<slash>\S+)|,\s*(?P<comma>\S+))"
+)
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,8 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
     """See how the numbers stand in a file, as far as that is not stated.
 
     The numbers begin at the first line from which on twenty lines have as many cells, the same of them numbers and at least one;
-    of separators that fit, tabs come before semicolons, commas and blanks. Names stand on the line above, or two above if that one holds units.
+    of separators that fit, tabs come before semicolons, commas and blanks. Names stand on the line above, or two above if
+    that one holds units.
 
     Raises
     ------
@@ -84,7 +87,12 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
         if begin is None or begin >= len(lines):
             continue
         cells = [_cells(line, separator) for line in lines[begin : begin + 200] if line.strip()]
-        if not cells or (stated.separator is None and separator != "blanks" and len(cells[0]) < 2 and stated.header_lines is not None):
+        if not cells or (
+            stated.separator is None
+            and separator != "blanks"
+            and len(cells[0]) < 2
+            and stated.header_lines is not None
+        ):
             continue
         names_line, units_line = _header(lines, begin, separator, len(cells[0]), stated)
         width = len(cells[0])
@@ -96,8 +104,8 @@ def layout_of(path: Path, stated: FileBlock) -> Layout:
             tuple(_unit(w) or u for w, u in zip(written, units, strict=True)), names_line,
         )  # fmt: skip
     raise InputError(
-        f"{path}: no lines of numbers found; expected a recording, as text with tabs, semicolons, commas or blanks between cells. "
-        "State separator and header_lines under [file] of the recipe"
+        f"{path}: no lines of numbers found; expected a recording, as text with tabs, semicolons, commas or blanks "
+        "between cells. State separator and header_lines under [file] of the recipe"
     )
 
 
@@ -140,12 +148,19 @@ def _begin(lines: Sequence[str], separator: str) -> int | None:
     for k, (i, shape) in enumerate(filled):
         after = [other for _, other in filled[k : k + _ROWS]]
         enough = len(after) == _ROWS or (k + len(after) == len(filled) and len(after) > 1)
-        if sum(shape) and len(shape) > 1 and enough and all(len(o) == len(shape) and sum(o) >= sum(shape) - 1 for o in after):
+        if (
+            sum(shape)
+            and len(shape) > 1
+            and enough
+            and all(len(o) == len(shape) and sum(o) >= sum(shape) - 1 for o in after)
+        ):
             return i
     return None
 
 
-def _header(lines: Sequence[str], begin: int, separator: str, width: int, stated: FileBlock) -> tuple[int, int]:
+def _header(
+    lines: Sequence[str], begin: int, separator: str, width: int, stated: FileBlock
+) -> tuple[int, int]:
     """Lines of names and of units, from 1; 0 without."""
     if stated.names_line is not None:
         return min(stated.names_line, len(lines)), min(stated.units_line or 0, len(lines))
@@ -168,7 +183,11 @@ def _unit(cell: str) -> str:
 def name_and_unit(cell: str) -> tuple[str, str]:
     """A header taken apart; text behind a name is a unit only if it is one."""
     found = _WITH_UNIT.fullmatch(cell)
-    unit = next((part for part in found.groupdict().values() if part and part != found["name"]), "") if found else ""
+    unit = (
+        next((part for part in found.groupdict().values() if part and part != found["name"]), "")
+        if found
+        else ""
+    )
     return (found["name"], unit.strip()) if found and is_unit(unit) else (cell, "")
 
 
@@ -183,7 +202,9 @@ def column_number(layout: Layout, name: str) -> int | None:
     return None
 
 
-def _decimal(path: Path, begin: int, cells: Sequence[Sequence[str]], separator: str, stated: FileBlock) -> str:
+def _decimal(
+    path: Path, begin: int, cells: Sequence[Sequence[str]], separator: str, stated: FileBlock
+) -> str:
     if stated.decimal is not None:
         return "," if stated.decimal == "comma" else "."
     written = [cell for row in cells for cell in row if _NUMBER.fullmatch(cell)]
@@ -191,8 +212,8 @@ def _decimal(path: Path, begin: int, cells: Sequence[Sequence[str]], separator: 
     point = next((cell for cell in written if "." in cell), None)
     if comma and point:
         raise InputError(
-            f"{path}, below line {begin}: found {comma!r} and {point!r}; expected one decimal separator: state decimal under [file] "
-            "of the recipe"
+            f"{path}, below line {begin}: found {comma!r} and {point!r}; expected one decimal separator: state decimal under "
+            "[file] of the recipe"
         )
     return "," if comma and separator != "comma" else "."
 
@@ -228,7 +249,7 @@ def read_numbers(
     options = {
         "sep": SEPARATORS[layout.separator], "header": None, "usecols": wanted, "decimal": layout.decimal,
         "na_values": list(MISSING), "skip_blank_lines": False, "skipinitialspace": True, "chunksize": PIECE, "engine": "c",
-        "dtype": {i: str for i in labels}, "index_col": False,
+        "dtype": dict.fromkeys(labels, str), "index_col": False,
         "nrows": _rows(layout, footer_lines),
     }  # fmt: skip
     with _text(layout) as text:
@@ -246,8 +267,12 @@ def read_numbers(
                 lines.append(number[filled])
         except pd.errors.ParserError as error:
             said = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error))
-            where = f", line {layout.header_lines + int(said[2])}: {said[3]} cells" if said else ": lines differ"
-            raise InputError(f"{layout.path}{where}; expected {layout.width} in each, as in the first") from None
+            where = (
+                f", line {layout.header_lines + int(said[2])}: {said[3]} cells" if said else ": lines differ"
+            )
+            raise InputError(
+                f"{layout.path}{where}; expected {layout.width} in each, as in the first"
+            ) from None
     return (
         {i: np.concatenate(part) for i, part in parts.items()},
         {i: (tuple(known[i]), np.concatenate(part)) for i, part in codes.items()},
@@ -286,7 +311,9 @@ def _converted(layout: Layout, cells: Any, number: Any, column: int) -> FloatArr
     else:
         plain = cells.astype(str).str.strip()
         if layout.decimal == ",":
-            plain = plain.where(plain.str.contains(".", regex=False), plain.str.replace(",", ".", regex=False))
+            plain = plain.where(
+                plain.str.contains(".", regex=False), plain.str.replace(",", ".", regex=False)
+            )
         values = pd.to_numeric(plain, errors="coerce").to_numpy(dtype=np.float64)
         wrong = (np.isnan(values) & cells.notna().to_numpy()) | np.isinf(values)
     if wrong.any():

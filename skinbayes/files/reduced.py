@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from skinbayes.errors import InputError
 from skinbayes.files.dataset import Dataset
 from skinbayes.files.reading import open_file
@@ -104,7 +102,9 @@ class ReducedRecordings:
         data.parent.mkdir(parents=True, exist_ok=True)
         text = self.dataset.to_csv()
         data.write_text(text, encoding="utf-8", newline="\n")
-        described.write_text(provenance_text(self, hashlib.sha256(text.encode()).hexdigest()), encoding="utf-8", newline="\n")
+        described.write_text(
+            provenance_text(self, hashlib.sha256(text.encode()).hexdigest()), encoding="utf-8", newline="\n"
+        )
         return data, described
 
 
@@ -164,13 +164,17 @@ def reduce_recordings(
     """
     plan = load_recipe(recipe)
     frames: Mapping[str, Any] = recordings if isinstance(recordings, Mapping) else {}
-    names = list(frames) if frames else [recordings] if isinstance(recordings, (str, Path)) else list(recordings)
+    names = (
+        list(frames) if frames else [recordings] if isinstance(recordings, (str, Path)) else list(recordings)
+    )
     if not names or len(set(map(str, names))) < len(names):
         raise InputError("recordings: expected at least one, and none twice")
     found, sources = [], {}
     short = [Path(str(name)).name for name in names]
     for count, (name, known) in enumerate(zip(names, short, strict=True), 1):
-        recording = recording_of_frame(frames[name], str(name), plan) if frames else read_recording(name, plan)
+        recording = (
+            recording_of_frame(frames[str(name)], str(name), plan) if frames else read_recording(name, plan)
+        )
         unique = known if short.count(known) == 1 else str(name)
         object.__setattr__(recording, "name", str(name))  # messages have the path
         reduced = reduce_recording(recording, plan.rules)

@@ -3,23 +3,44 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
+from skinbayes.files.recipe import Recipe
 from skinbayes.files.toml_text import toml_text
+from skinbayes.recordings import ReducedRecording
 from skinbayes.recordings.words import overall_sentences
 from skinbayes.version import __version__
 
-if TYPE_CHECKING:
-    from skinbayes.files.reduced import ReducedRecordings
+
+class Reduced(Protocol):
+    """What is told of a reduction."""
+
+    @property
+    def recordings(self) -> tuple[ReducedRecording, ...]:
+        """One for each file."""
+
+    @property
+    def recipe(self) -> Recipe:
+        """By which they were reduced."""
+
+    @property
+    def sources(self) -> Mapping[str, str]:
+        """Name to sha256 of each file."""
+
+    @property
+    def before_zero(self) -> int:
+        """Rows left out because time counts from later."""
 
 
-def rule_sentences(reduced: ReducedRecordings) -> list[str]:
+def rule_sentences(reduced: Reduced) -> list[str]:
     """What was done, in words."""
     recipe = reduced.recipe
     rules, columns = recipe.rules, recipe.columns
     source = rules.strokes_from or next(
-        (key for key in ("position", "sliding_speed") if key in columns and columns[key].value is None), "tangential_force"
+        (key for key in ("position", "sliding_speed") if key in columns and columns[key].value is None),
+        "tangential_force",
     )
     by_way = {"position", "sliding_speed"} & {key for key in columns if columns[key].value is None}
     steady = (
@@ -29,7 +50,9 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     )
     zeros = Counter(one.tangential_zero.how.split(",")[0] for one in reduced.recordings)
     said = [
-        "each recording is one stroke" if source == "whole" else f"strokes from the {source.replace('_', ' ')}",
+        "each recording is one stroke"
+        if source == "whole"
+        else f"strokes from the {str(source).replace('_', ' ')}",
         f"steady part: {steady}",
         f"zero of the tangential force: {', '.join(zeros)}; of the normal force: {reduced.recordings[0].normal_zero.how}",
         f"friction coefficient: {rules.friction}",
@@ -43,11 +66,13 @@ def rule_sentences(reduced: ReducedRecordings) -> list[str]:
     if recipe.each != ("stroke",):
         said.append(f"a row for each {' and '.join(recipe.each)}")
     if recipe.time_zero:
-        said.append(f"time counts from {recipe.time_zero:g} s, and {reduced.before_zero} rows before are left out")
+        said.append(
+            f"time counts from {recipe.time_zero:g} s, and {reduced.before_zero} rows before are left out"
+        )
     return said
 
 
-def provenance_text(reduced: ReducedRecordings, sha256: str) -> str:
+def provenance_text(reduced: Reduced, sha256: str) -> str:
     """Text of a ``provenance.toml``."""
     block = reduced.recipe.block
     names = list(reduced.sources)
@@ -61,9 +86,9 @@ def provenance_text(reduced: ReducedRecordings, sha256: str) -> str:
         "where": f"Recordings {shown}",
         "how_read": f"Reduced by skinbayes {__version__} by the recipe below",
         "transformation": "; ".join(rule_sentences(reduced)),
-        "spread": "Standard error of the mean over the steady part, from the number of independent samples (an autoregression fitted "
-        "to all strokes of a recording), widened so that 1.645 of it hold 90 %; it contains the error of the zeros of the forces, "
-        "which all strokes of a recording share. It does not contain how strokes, places and people differ.",
+        "spread": "Standard error of the mean over the steady part, from the number of independent samples (an autoregression "
+        "fitted to all strokes of a recording), widened so that 1.645 of it hold 90 %; it contains the error of the zeros of the "
+        "forces, which all strokes of a recording share. It does not contain how strokes, places and people differ.",
         "caveats": [*block.caveats, *overall_sentences(reduced.recordings)],
         "sha256": sha256,
         "recipe": reduced.recipe.text,

@@ -21,7 +21,9 @@ Rows = list[tuple[FrictionRow, int]]
 
 def grouped_rows(found: Sequence[ReducedRecording], recipe: Recipe) -> tuple[Rows, int]:
     """The rows that the recipe asks for, and how many were left out because they lie before the zero of time."""
-    rows = [(replace(row, time=row.time - recipe.time_zero), i) for i, one in enumerate(found) for row in one.used]
+    rows = [
+        (replace(row, time=row.time - recipe.time_zero), i) for i, one in enumerate(found) for row in one.used
+    ]
     after = [(row, i) for row, i in rows if row.time >= 0]
     before = len(rows) - len(after)
     if not after:
@@ -31,14 +33,17 @@ def grouped_rows(found: Sequence[ReducedRecording], recipe: Recipe) -> tuple[Row
     if recipe.each == ("pair",):
         pairs = [(row, i) for i in range(len(found)) for row in paired([r for r, j in after if j == i])]
         if not pairs:
-            raise InputError(f"{recipe.path}: rows.each: no forward stroke beside a backward one; expected pairs of them")
+            raise InputError(
+                f"{recipe.path}: rows.each: no forward stroke beside a backward one; expected pairs of them"
+            )
         return pairs, before
     groups: dict[tuple[Any, ...], Rows] = {}
     for row, i in after:
         key = (i,) if recipe.each == ("recording",) else tuple(row.labels[name] for name in recipe.each)
         groups.setdefault((row.load_bin, *key), []).append((row, i))
     return [
-        (averaged([row for row, _ in members], [i for _, i in members]), members[0][1]) for members in groups.values()
+        (averaged([row for row, _ in members], [i for _, i in members]), members[0][1])
+        for members in groups.values()
     ], before
 
 
@@ -73,7 +78,11 @@ def table_columns(rows: Rows, found: Sequence[ReducedRecording], recipe: Recipe)
     for header, values in numbers.items():
         array = np.asarray(values, dtype=np.float64)
         # a constant load has no error, and reading a spread of 0 is refused
-        wanted = np.all(array > 0) if "_standard_error" in header or "_scatter " in header else np.isfinite(array).any()
+        wanted = (
+            np.all(array > 0)
+            if "_standard_error" in header or "_scatter " in header
+            else np.isfinite(array).any()
+        )
         if wanted and header not in columns:
             columns[header] = array
     if not single:

@@ -23,7 +23,7 @@ class DrawnFit(AskedFit):
     >>> fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 100))
     """
 
-    def plot_data(self, width: str | None = None) -> Figure:
+    def plot_data(self, width: str | None = None, abscissa: str | None = None) -> Figure:
         """Data and model against the condition that varies: load, speed, humidity, time.
 
         See :func:`skinbayes.plot.plot_data` for what is drawn.
@@ -31,6 +31,7 @@ class DrawnFit(AskedFit):
         Parameters
         ----------
         width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
+        abscissa : condition to draw against, such as ``"normal_force"``; the usual one if omitted
 
         Returns
         -------
@@ -40,7 +41,7 @@ class DrawnFit(AskedFit):
         Raises
         ------
         InputError
-            A width that no page has.
+            A width that no page has. ``abscissa`` is no condition that differs between rows.
 
         Examples
         --------
@@ -49,7 +50,7 @@ class DrawnFit(AskedFit):
         """
         from skinbayes.plot import plot_data
 
-        return plot_data(self, width=width)
+        return plot_data(self, width, abscissa)
 
     def plot_corner(self, width: str | None = None) -> Figure:
         """Corner plot of the free parameters.

@@ -113,7 +113,12 @@ def other_version(file: Path, found: object, expected: object) -> InputError:
 
 def write_manifest(directory: Path, manifest: Manifest) -> None:
     """Write ``run.json``."""
-    write_atomically(directory / RUN, sealed_note({"format": FORMAT, **asdict(manifest)}))
+    write_atomically(directory / RUN, manifest_note(manifest))
+
+
+def manifest_note(manifest: Manifest) -> bytes:
+    """The content of ``run.json``."""
+    return sealed_note({"format": FORMAT, **asdict(manifest)})
 
 
 def trouble(directory: Path, manifest: Manifest) -> dict[str, str]:

@@ -66,40 +66,6 @@ class Contrast:
     spread: Triple | None
     people: dict[str, tuple[Triple, float]]
 
-    def sentence(self) -> str:
-        """The contrast in words."""
-        from skinbayes.phrases import number
-        from skinbayes.plot.numbers import interval, quantity
-        from skinbayes.plot.symbols import spoken_name
-
-        low, middle, high = self.value
-        lower = self.probability_lower >= 0.5
-        probable = self.probability_lower if lower else 1.0 - self.probability_lower
-        name = spoken_name(self.parameter)
-        compared = f"{self.level} {'over' if self.kind == 'ratio' else 'less'} {self.reference}"
-        said = (
-            f"{name[:1].upper()}{name[1:]}, {compared} ({self.column}): {quantity(middle, self.unit)} for the median, with 90 % "
-            f"probability between {interval(low, high, self.unit, typical=middle, joint=' and ')}; it is "
-            f"{'lower' if lower else 'higher'} with {self.level} with a probability of {_probability(probable)}."
-        )
-        if self.people:
-            sure = sum(max(p, 1.0 - p) >= SURE for _, p in self.people.values())
-            said += (
-                f" Of {len(self.people)} taken one by one {sure or 'none'} {'is' if sure == 1 else 'are'} changed with a "
-                f"probability of {number(100 * SURE)} % or more."
-            )
-        return said
-
-
-SURE = 0.95
-"""Probability from which on one person counts as changed."""
-
-
-def _probability(value: float) -> str:
-    if value > 0.999:
-        return "more than 99.9 %"
-    return f"{100 * value:.1f} %"
-
 
 @dataclass(frozen=True)
 class PopulationFinding:
@@ -133,35 +99,6 @@ class PopulationFinding:
     def to_dict(self) -> dict[str, Any]:
         """As plain types."""
         return asdict(self)
-
-    def sentence(self) -> str:
-        """The population in words."""
-        from skinbayes.phrases import number, percent
-        from skinbayes.plot.numbers import interval, quantity
-        from skinbayes.plot.symbols import spoken_name
-
-        low, middle, high = self.median
-        name = spoken_name(self.parameter)
-        medians = [person.value[1] for person in self.people]
-        if self.scale_of == "ln":
-            factors = [float(np.exp(s)) for s in self.scale]
-            apart = (
-                f"one {self.by} differs from the median by a factor of {number(factors[1], 3)} "
-                f"({number(factors[0], 3)} to {number(factors[2], 3)}) or so"
-            )
-        else:
-            of = f" of its {self.scale_of}" if self.scale_of else ""
-            unit = "1" if self.scale_of else self.unit
-            apart = (
-                f"the standard deviation{of} between levels of {self.by} is {quantity(self.scale[1], unit)} "
-                f"({interval(self.scale[0], self.scale[2], unit, typical=self.scale[1])})"
-            )
-        return (
-            f"{name[:1].upper()}{name[1:]}: {quantity(middle, self.unit)} for the median {self.by} (90 %: "
-            f"{interval(low, high, self.unit, typical=middle)}); {apart}. The {len(medians)} have medians between "
-            f"{interval(min(medians), max(medians), self.unit, joint=' and ')}; of how they differ "
-            f"{percent(self.pooling)} is not told by the data."
-        )
 
 
 def population_findings(fit: FitResult) -> list[PopulationFinding]:

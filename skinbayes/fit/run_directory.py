@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import shlex
-from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -25,12 +23,11 @@ from skinbayes.fit.manifest import (
     RESULT,
     RUN,
     STEPS,
-    SUMMARY,
     Manifest,
     trouble,
     write_manifest,
 )
-from skinbayes.fit.netcdf import result_image
+from skinbayes.fit.run_contents import result_contents, with_files
 from skinbayes.fit.run_inputs import (
     Held,
     own_baseline_models,
@@ -175,13 +172,11 @@ class RunDirectory:
         """Write the result, and see that everything is there."""
         self.check()
         try:
-            table = fit.summary(derived=True).to_csv(index_label="parameter", lineterminator="\n")
-            contents = {RESULT: result_image(fit.groups, fit.provenance), SUMMARY: table.encode()}
+            contents = result_contents(fit)
             for name, content in contents.items():
                 write_atomically(self.path / name, content)
-            written = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
             # last: a result that is listed is one that was finished
-            write_manifest(self.path, replace(self._manifest, files={**self._manifest.files, **written}))
+            write_manifest(self.path, with_files(self._manifest, contents))
         except OSError as error:
             self.check()
             raise cannot_write(self.path, error) from error

@@ -119,6 +119,16 @@ def write_inputs(directory: Path, problem: Problem | JointProblem, engine: str) 
 
     What stands there already and differs is put aside and named in a :class:`RepairWarning`.
     """
+    manifest, contents = inputs_of(problem, engine)
+    # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again
+    write_manifest(directory, manifest)
+    for name, content in contents.items():
+        _write_copy(directory / name, content)
+    return manifest
+
+
+def inputs_of(problem: Problem | JointProblem, engine: str) -> tuple[Manifest, dict[str, bytes]]:
+    """Note of a run, and the content of its model file, data, curves and baseline models by their path inside it."""
     copies: dict[str, Path] = {}
     texts = {"model.toml": problem.spec.text}
     note: dict[str, Any] = {}
@@ -164,11 +174,7 @@ def write_inputs(directory: Path, problem: Problem | JointProblem, engine: str) 
         files=files,
         experiments=experiments,
     )
-    # the note first: what a kill leaves behind is known as a run; until there are steps, all is written again
-    write_manifest(directory, manifest)
-    for name, content in contents.items():
-        _write_copy(directory / name, content)
-    return manifest
+    return manifest, contents
 
 
 def _data(problem: Problem, folder: str, texts: dict[str, str], copies: dict[str, Path]) -> DataNote:

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinbayes.arrays import FloatArray
+from skinbayes.errors import InputError
 from skinbayes.fit.predicted import observables, observed_values
 from skinbayes.forward import Profile
 from skinbayes.plot.predictive import LEVELS, plot_predictive, predictive_quantiles
-from skinbayes.plot.profile_bands import MOST_CURVES, Band, profile_bands
-from skinbayes.plot.rows import varying
+from skinbayes.plot.profile_bands import MOST_CURVES, Band, profile_bands, with_discrepancy
+from skinbayes.plot.rows import effect_at_rows, group_columns, varying, varying_conditions
 from skinbayes.plot.scales import Scale, axis_scale, scale_for, ticks
 from skinbayes.plot.style import (
     OBSERVED,
@@ -28,7 +29,7 @@ from skinbayes.plot.style import (
     wrapped,
 )
 from skinbayes.plot.symbols import axis_name
-from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX
+from skinbayes.vocabulary import STANDARD_DEVIATION_SUFFIX, suggestions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,35 +47,54 @@ MOST_BARS = 40
 """With more rows than this, each of other conditions, there are no bars row by row but a few curves."""
 
 
-def plot_data(fit: FitResult, width: str | None = None) -> Figure:
+def plot_data(fit: FitResult, width: str | None = None, abscissa: str | None = None) -> Figure:
     """Draw the data and what the fitted model says of them against the condition that varies: load, speed, humidity, time.
 
     Parameters
     ----------
     fit : any fit
     width : as text with its unit, such as ``"84 mm"`` for a column of a journal; that of a screen if omitted
+    abscissa : condition to draw against, one of :func:`data_abscissas`; the first if omitted
 
     Returns
     -------
     matplotlib.figure.Figure
         One panel for each observable. Rows that share all other conditions share a curve: the line is the median of the model,
-        the band holds 90 % of the posterior, pale bars at the rows 90 % of what would be measured there, scatter included. Where
-        each row has conditions of its own there are only bars, as in :func:`plot_predictive`. Dots are the data. Where nothing
+        the band holds 90 % of the posterior (a darker one half, where there is one curve), pale bars at the rows 90 % of what
+        would be measured there, scatter and effects of groups included. With a discrepancy along the abscissa the curve
+        contains it, and a dashed line is the median of the theory alone. Where each row has conditions of its own there are
+        only bars, as in :func:`plot_predictive`. Dots are the data, with their standard deviations where these are known;
+        small open ones, where groups have effects, are the data without them: what the curve should go through. Where nothing
         varies, or the model is gone, this is :func:`plot_predictive`.
+
+    Raises
+    ------
+    InputError
+        ``abscissa`` is no condition that differs between rows.
     """
-    view = None if fit.problem is None else varying(fit)
-    if view is None or fit.problem is None:
+    offered = data_abscissas(fit)
+    if abscissa is not None and abscissa not in offered:
+        known = (
+            f"these data can be drawn against {', '.join(offered)}"
+            if offered
+            else "no condition of these data differs"
+        )
+        raise InputError(f"abscissa: found {abscissa!r}; {known}.{suggestions(abscissa, list(offered))}")
+    if not offered or fit.problem is None:
         return plot_predictive(fit, width)
-    name, along = view
+    name = abscissa or next(iter(offered))
+    along = offered[name]
     names = observables(fit)
     observed = observed_values(fit).reshape(len(names), -1)
     expected = predictive_quantiles(fit).reshape(len(LEVELS), len(names), -1)
     size = inches(width)
     bands = [_bands(fit, fit.problem, name, along, observable) for observable in names]
+    bare = _without_effects(fit, fit.problem)
     several = max(len(found) for found in bands) > 1
     # long names of rows take several lines of the key
     rows = max(sum(1 + len(band.label) // letters_of_key(size) for band in found) for found in bands)
-    below = 0.6 + 0.2 * (rows + 1 if several else 2)
+    extra = (bare is not None) + any(band.theory is not None for found in bands for band in found)
+    below = 0.6 + 0.2 * (rows + 1 + extra if several else 2 + (extra + 1) // 2)
     with look(size):
         figure = new_figure(
             size, 0.4 + below + 0.47 * size * len(names), left=0.12 * size + 0.12, right=0.15, bottom=below, top=0.4,
@@ -82,12 +102,34 @@ def plot_data(fit: FitResult, width: str | None = None) -> Figure:
         )  # fmt: skip
         axes = figure.subplots(len(names), 1, squeeze=False, sharex=True)[:, 0]
         for i, (ax, observable) in enumerate(zip(axes, names, strict=True)):
-            _panel(ax, fit, _View(name, along, observable, observed[i], expected[:, i], bands[i]))
+            _panel(
+                ax,
+                fit,
+                _View(
+                    name,
+                    along,
+                    observable,
+                    observed[i],
+                    expected[:, i],
+                    bands[i],
+                    None if bare is None else bare[i],
+                ),
+            )
         unit, label = axis_name(name)
         axes[-1].set_xlabel(axis_scale(name, scale_for(unit, along)).label(label))
         key_below(figure, axes[0], 1 if several else 2)
         set_title(figure, fit, f"Data and model against {label}")
     return figure
+
+
+def data_abscissas(fit: FitResult) -> dict[str, FloatArray]:
+    """What the data of a fit can be drawn against: name to the value of each row, ``(N,)``, SI; the usual one first."""
+    found = varying(fit)
+    if found is None or fit.problem is None:
+        return {}
+    return {found[0]: found[1]} | {
+        name: values for name, values in varying_conditions(fit.problem).items() if name != found[0]
+    }
 
 
 @dataclass(frozen=True)
@@ -100,6 +142,7 @@ class _View:
     observed: FloatArray
     expected: FloatArray
     bands: list[Band]
+    without_effects: FloatArray | None = None
 
 
 def _bands(fit: FitResult, problem: Problem, name: str, along: FloatArray, observable: str) -> list[Band]:
@@ -120,7 +163,26 @@ def _bands(fit: FitResult, problem: Problem, name: str, along: FloatArray, obser
     bands = profile_bands(fit, problem, profile)
     shown = sum(len(band.rows) for band in bands)
     few = len(bands) <= MOST_CURVES and shown == len(along) and shown > len(bands)
-    return bands if few or len(along) > MOST_BARS else []
+    return (
+        [with_discrepancy(fit, problem, profile, band) for band in bands]
+        if few or len(along) > MOST_BARS
+        else []
+    )
+
+
+def _without_effects(fit: FitResult, problem: Problem) -> FloatArray | None:
+    """The data less the posterior median of the effects of their groups, ``(observables, N)``, SI; None without effects."""
+    columns = group_columns(fit)
+    if not columns:
+        return None
+    names = observables(fit)
+    values = observed_values(fit).reshape(len(names), -1)
+    effect = sum(
+        (np.median(effect_at_rows(fit, column), axis=0) for column in columns),
+        start=np.zeros(values.shape[1]),
+    )
+    logarithmic = problem.noise_is_logarithmic.reshape(len(names), -1)[:, :1]
+    return np.asarray(np.where(logarithmic, values * np.exp(-effect), values - effect))
 
 
 def _panel(ax: Axes, fit: FitResult, view: _View) -> None:
@@ -135,6 +197,11 @@ def _panel(ax: Axes, fit: FitResult, view: _View) -> None:
         colours = [(np.arange(len(view.along)), OBSERVED)]
     for i, (rows, colour) in enumerate(colours):
         _dots(ax, fit, view, rows, colour, (x_scale, y_scale), "measured" if i == 0 else None)
+    if view.without_effects is not None and view.bands:
+        ax.plot(
+            x_scale.shown(view.along), y_scale.shown(view.without_effects), "o", markersize=3.0, markerfacecolor="none",
+            markeredgecolor="#5A5A5A", markeredgewidth=0.6, zorder=2.9, label="less effects of groups",
+        )  # fmt: skip
     if x_scale.logarithmic:
         ax.set_xscale("log")
     if y_scale.logarithmic:
@@ -153,7 +220,7 @@ def _curves(ax: Axes, view: _View, x_scale: Scale, y_scale: Scale) -> list[tuple
     whole = sum(len(band.rows) for band in view.bands) == len(view.along)
     drawn = []
     for band, colour in zip(view.bands, [POSTERIOR] if single else SERIES, strict=False):
-        x, (low, _, median, _, high) = x_scale.shown(band.abscissa), y_scale.shown(band.quantiles)
+        x, (low, q25, median, q75, high) = x_scale.shown(band.abscissa), y_scale.shown(band.quantiles)
         if whole:
             at, ends = _expected(view, np.array(band.rows))
             ax.vlines(
@@ -169,7 +236,14 @@ def _curves(ax: Axes, view: _View, x_scale: Scale, y_scale: Scale) -> list[tuple
             linewidth=0.0,
             label="90 % of the model" if single else "",
         )
+        if single:
+            ax.fill_between(x, q25, q75, color=colour, alpha=0.35, linewidth=0.0)
         ax.plot(x, median, color=colour, label="median" if single else wrapped(ax, band.label))
+        if band.theory is not None:
+            ax.plot(
+                x, y_scale.shown(band.theory), color="#1A1A1A" if single else colour, linewidth=0.9, linestyle=(0, (4, 2)),
+                label="theory alone" if single else "",
+            )  # fmt: skip
         drawn.append((np.array(band.rows), OBSERVED if single else colour))
     return drawn if whole else [(np.arange(len(view.along)), OBSERVED)]
 
@@ -196,10 +270,14 @@ def _dots(
     scales: tuple[Scale, Scale],
     label: str | None,
 ) -> None:
-    spread = view.observable + STANDARD_DEVIATION_SUFFIX
     known = fit.groups["constant_data"]
-    errors = scales[1].shown(known[spread].values[rows]) if spread in known else None
+    y_error, x_error = (
+        scale.shown(known[name + STANDARD_DEVIATION_SUFFIX].values[rows])
+        if name + STANDARD_DEVIATION_SUFFIX in known
+        else None
+        for name, scale in ((view.observable, scales[1]), (view.abscissa, scales[0]))
+    )
     ax.errorbar(
-        scales[0].shown(view.along[rows]), scales[1].shown(view.observed[rows]), errors, fmt="o", color=colour,
+        scales[0].shown(view.along[rows]), scales[1].shown(view.observed[rows]), y_error, x_error, fmt="o", color=colour,
         markersize=5.0, markeredgecolor="white", markeredgewidth=0.6, elinewidth=0.9, zorder=3, label=label,
     )  # fmt: skip

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.fit.predicted import row_names
+from skinbayes.fit.predicted import is_logarithmic, row_names
+from skinbayes.plot.discrepancy import curves_of
 from skinbayes.plot.numbers import quantity
 from skinbayes.plot.predictive import LEVELS
+from skinbayes.problem.covariates import factor_key
 from skinbayes.statistics.quantiles import finite_quantiles
 from skinbayes.vocabulary import QUANTITIES
 
@@ -42,12 +44,14 @@ class Band:
     rows : the rows that share it
     abscissa : shape ``(K,)``, SI
     quantiles : 5, 25, 50, 75 and 95 % quantiles of the ordinate, shape ``(5, K)``, SI
+    theory : where ``quantiles`` contain a discrepancy, the median without it, shape ``(K,)``, SI
     """
 
     label: str
     rows: list[int]
     abscissa: FloatArray
     quantiles: FloatArray
+    theory: FloatArray | None = None
 
 
 def profile_bands(fit: FitResult, problem: Problem, profile: Profile) -> list[Band]:
@@ -65,6 +69,27 @@ def profile_bands(fit: FitResult, problem: Problem, profile: Profile) -> list[Ba
         label = position + _row_text(problem, names, rows, shared) + _load(problem, middle, rows)
         bands.append(Band(label, rows, abscissa, quantiles))
     return bands
+
+
+def with_discrepancy(fit: FitResult, problem: Problem, profile: Profile, band: Band) -> Band:
+    """The band with the discrepancy along its abscissa in it, draw by draw.
+
+    The band as it is if there is none, or where there are others that depend on more than the abscissa.
+    """
+    curves = curves_of(fit)
+    if len(curves) != 1 or curves[0].column != profile.abscissa or len(curves[0].levels) != 1:
+        return band
+    posterior, kept = fit.groups["posterior"], fit.groups["discrepancy"]
+    # curves may have been kept of one in several draws
+    places = np.searchsorted(posterior["draw"].values, kept["draw"].values)
+    shape = (posterior.sizes["chain"], posterior.sizes["draw"], len(fit.names))
+    theta = fit.theta().reshape(shape)[:, places].reshape(-1, len(fit.names))
+    few = slice(None, None, max(1, len(theta) // DRAWS))
+    grid, theory = curve_at_row(problem, profile, theta[few], band.rows[0])
+    missed = np.array([np.interp(grid, curves[0].x, draw) for draw in curves[0].draws[few, 0]])
+    logarithmic = is_logarithmic(fit, profile.ordinate)
+    whole = theory * np.exp(missed) if logarithmic else theory + missed
+    return replace(band, quantiles=finite_quantiles(whole, LEVELS), theory=finite_quantiles(theory, [0.5])[0])
 
 
 def curve_at_row(
@@ -99,6 +124,13 @@ def curve_at_row(
     }
     tables = replace(problem.tables, flow_curves=None)
     grid = profile.grid({name: value[:, 0] for name, value in inputs.items()}, problem.tables.at_row(row))
+    # what acts as a power of the abscissa runs along the curve too
+    for covariate in problem.spec.covariates:
+        key = factor_key(covariate.acts_on) if covariate.acts_on in problem.observables else covariate.acts_on
+        if covariate.column == profile.abscissa and key in inputs:
+            exponent = given[f"covariate_exponent[{covariate.name}]"]
+            at_row = problem.conditions.covariates[covariate.column][row]
+            inputs[key] = inputs[key] * (grid / at_row) ** exponent
     found = problem.evaluate({**inputs, profile.abscissa: grid[np.newaxis]}, tables)[profile.ordinate]
     return grid, np.array(np.broadcast_to(found, (len(theta), len(grid))))
 

@@ -32,16 +32,25 @@ def plot_recording(one: ReducedRecording, width: str | None = None) -> Figure:
     """
     size = inches(width)
     with look(size):
-        figure = new_figure(size, 4.4 if size >= SMALL else 4.0, left=0.95 if size >= SMALL else 0.8, right=0.15, bottom=0.5, top=0.1)
+        figure = new_figure(
+            size,
+            4.4 if size >= SMALL else 4.0,
+            left=0.95 if size >= SMALL else 0.8,
+            right=0.15,
+            bottom=0.5,
+            top=0.1,
+        )
         grid = figure.add_gridspec(3, 1, height_ratios=(1.3, 0.8, 1.3), hspace=0.22)
-        force, load, friction = (figure.add_subplot(place) for place in grid)
+        force, load, friction = (figure.add_subplot(grid[place]) for place in range(3))
         view = one.preview
         for ax, values, color, label in (
             (force, view.tangential_force, BLUE, "tangential\nforce [N]"),
             (load, view.normal_force, GREY, "normal\nforce [N]"),
         ):
             _marked(ax, one)
-            ax.fill_between(view.time, values[0], values[1], color=color, linewidth=0.5, edgecolor=color, zorder=2)
+            ax.fill_between(
+                view.time, values[0], values[1], color=color, linewidth=0.5, edgecolor=color, zorder=2
+            )
             ax.set_ylabel(label)
             ax.tick_params(labelbottom=False)
         force.axhline(0.0, color=GREY, linewidth=0.8, linestyle="--", zorder=1)
@@ -61,7 +70,11 @@ def _marked(ax: Axes, one: ReducedRecording) -> None:
             continue
         begin, end = (row.start, row.stop) if row.left_out else (row.begin, row.end)
         ax.axvspan(
-            one.times[begin], one.times[end], color=NOT_TAKEN if row.left_out else TAKEN, linewidth=0, zorder=0
+            one.times[begin],
+            one.times[end],
+            color=NOT_TAKEN if row.left_out else TAKEN,
+            linewidth=0,
+            zorder=0,
         )
 
 

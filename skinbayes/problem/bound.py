@@ -193,12 +193,15 @@ class BoundModel(Posterior):
         priors = [p.prior for p in self.free if p.prior]
         return input_ranges(priors, self.inputs, multiples=whole_ties(self.tied))
 
-    def prepared_for_many(self, progress: Progress | None = None, cores: int = 1) -> ForwardModel:
+    def prepared_for_many(
+        self, progress: Progress | None = None, cores: int = 1, ranges: TiedRanges | None = None
+    ) -> ForwardModel:
         """:meth:`prepare` also where there are no observations, but many parameter vectors to evaluate.
 
         Parameters
         ----------
         progress, cores : as :meth:`prepare` takes them
+        ranges : those to prepare for, which hold :meth:`ranges`, if it is to serve other problems too
 
         Returns
         -------
@@ -218,7 +221,7 @@ class BoundModel(Posterior):
         prepared = self.forward
         if prepared.prepare is not None and self.free:
             with explained(self.spec.path, "no table can be made for the priors"), np.errstate(all="ignore"):
-                prepared = prepared.prepare(prepared, self.ranges(), self.tables, progress, cores)
+                prepared = prepared.prepare(prepared, ranges or self.ranges(), self.tables, progress, cores)
             if (
                 self.surface_prior is not None
                 and self.forward.expensive

@@ -208,7 +208,7 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
     spread = np.zeros_like(values)
     spread_column = _spread_column(dataset, name)
     if spread_column:
-        _check_said(spec, "spread", spread_column)
+        _check_said(spec, dataset, "spread", spread_column)
     try:
         noise.check_observed(values)
     except InputError as error:
@@ -223,12 +223,17 @@ def _observation(spec: ModelSpec, forward: ForwardModel, dataset: Dataset, name:
     return Observation(name, values, spread, noise, several)
 
 
-def _check_said(spec: ModelSpec, key: str, column: str) -> None:
+def _check_said(spec: ModelSpec, dataset: Dataset, key: str, column: str) -> None:
     """Refuse a spread of the data of which the model file does not say whether it is used."""
     if getattr(spec, key) is None:
+        where = (
+            f", in a copy of the model such as {_copy(spec, dataset)} writes for these data"
+            if spec.shipped
+            else ""
+        )
         raise InputError(
             f"{spec.path}: the data have a column '{column}'; say in [data] whether it enters the likelihood: "
-            f'{key} = "use" or {key} = "ignore"'
+            f'{key} = "use" or {key} = "ignore"{where}'
         )
 
 
@@ -264,9 +269,12 @@ def _ways_out(spec: ModelSpec, dataset: Dataset, key: str, column: str) -> str:
     """What to do about a spread that the model file uses and the data do not have."""
     where = "the model file"
     if spec.shipped:
-        copy = f"'skinbayes new {spec.name} --data {dataset.path.name} -o mine.toml'"
-        where = f"a copy of the model, such as {copy} writes for these data"
+        where = f"a copy of the model, such as {_copy(spec, dataset)} writes for these data"
     return f'Either add {column}, or, if it is not known, write {key} = "ignore" under [data] of {where}'
+
+
+def _copy(spec: ModelSpec, dataset: Dataset) -> str:
+    return f"'skinbayes new {spec.name} --data {dataset.path.name} -o mine.toml'"
 
 
 def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -> dict[str, FloatArray]:
@@ -274,7 +282,7 @@ def relative_input_spread(spec: ModelSpec, dataset: Dataset, rows: Conditions) -
     found = {}
     columns = {name: column for name in rows.values if (column := _spread_column(dataset, name))}
     for name, column in columns.items():
-        _check_said(spec, "input_spread", column)
+        _check_said(spec, dataset, "input_spread", column)
         spread = np.asarray(dataset.columns[column], dtype=float)
         if spec.input_spread == "use" and spread.any():
             found[name] = spread / positive_column(dataset, name, "its spread is taken relative to it")

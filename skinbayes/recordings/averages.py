@@ -21,7 +21,11 @@ def paired(rows: Sequence[FrictionRow]) -> list[FrictionRow]:
     found, waiting = [], list(rows)
     while len(waiting) > 1:
         first, second = waiting[:2]
-        if first.direction * second.direction < 0 and second.stroke == first.stroke + 1 and first.load_bin == second.load_bin:
+        if (
+            first.direction * second.direction < 0
+            and second.stroke == first.stroke + 1
+            and first.load_bin == second.load_bin
+        ):
             weights = np.array([first.normal_force, second.normal_force])
             found.append(_joined([first, second], weights / weights.sum(), between=False))
             del waiting[:2]

@@ -59,7 +59,8 @@ def memory_of(series: Sequence[FloatArray]) -> Memory:
 
     A straight line is taken off each series. The order is that of the smallest information criterion of Akaike; with
     coefficients a_k and variance v of what is new in a step, the density of the spectrum at frequency zero is
-    S = v/(1 + Σ a_k)² (Heidelberger & Welch 1981, 10.1145/358598.358630, use it so), and a mean of n samples has the variance S/n.
+    S = v/(1 + Σ a_k)² (Heidelberger & Welch 1981, 10.1145/358598.358630, use it so), and a mean of n samples has the
+    variance S/n.
 
     Parameters
     ----------
@@ -128,9 +129,7 @@ def _density_at_zero(series: Sequence[FloatArray]) -> tuple[float, int]:
     return best[1], best[2]
 
 
-def error_of_mean(
-    residuals: FloatArray, memory: Memory, *, step: float = 0.0
-) -> MeanError:
+def error_of_mean(residuals: FloatArray, memory: Memory, *, step: float = 0.0) -> MeanError:
     """Standard error of the mean of a series with memory.
 
     With s² the variance of the residuals about a straight line and τ the memory, n_e = n/τ samples are independent, and the

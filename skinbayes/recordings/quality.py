@@ -68,7 +68,8 @@ def useless(
         return f"{end - begin} samples in the steady part, at least 8 are needed"
     missing = ~(np.isfinite(force) & np.isfinite(load))
     if missing.mean() > MOST_MISSING:
-        return f"{100 * missing.mean():.0f} % of the steady part without value (from line {recording.line(begin + int(missing.argmax()))})"
+        where = recording.line(begin + int(missing.argmax()))
+        return f"{100 * missing.mean():.0f} % of the steady part without value (from line {where})"
     steps = np.diff(recording.time[begin:end])
     if steps.max() > LONGEST_GAP * recording.interval:
         where = recording.line(begin + int(steps.argmax()) + 1)

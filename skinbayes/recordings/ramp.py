@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -39,9 +40,13 @@ def load_bins(row: FrictionRow, normal: FloatArray, edges: tuple[float, ...]) ->
     cuts = np.concatenate(([0], np.flatnonzero(np.diff(which)) + 1, [which.size]))
     found = [
         replace(row, begin=row.begin + int(a), end=row.begin + int(b), load_bin=int(which[a]))
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True)
+        for a, b in itertools.pairwise(cuts)
         if which[a] and b - a >= FEWEST_SAMPLES
     ]
     return found or [
-        replace(row, left_out=f"a load from {load.min():.3g} N to {load.max():.3g} N, outside of all bins", by_recipe=True)
+        replace(
+            row,
+            left_out=f"a load from {load.min():.3g} N to {load.max():.3g} N, outside of all bins",
+            by_recipe=True,
+        )
     ]

@@ -43,8 +43,8 @@ def reduce_recording(recording: Recording, rules: Rules) -> ReducedRecording:
 
     The friction coefficient is that of the steady parts: F̄/N̄, or the mean of F/N, with F the tangential force against sliding,
     its sign such that friction is positive in most strokes. Its error is that of the mean of (F − μN)/N̄ (or of F/N), which has
-    the memory that all strokes of the recording show together (`memory_of`, `error_of_mean`); where friction repeats itself, as in
-    stick and slip, means of whole cycles take the place of samples.
+    the memory that all strokes of the recording show together (`memory_of`, `error_of_mean`); where friction repeats itself, as
+    in stick and slip, means of whole cycles take the place of samples.
 
     Parameters
     ----------
@@ -63,11 +63,11 @@ def reduce_recording(recording: Recording, rules: Rules) -> ReducedRecording:
     normal_raw = np.broadcast_to(recording.normal_force, recording.time.shape)
     recording = replace(recording, saturated=_saturated(recording))
     strokes, way = find_strokes(recording, rules), way_of(recording)
-    normal_zero = _at_rest(recording, normal_raw, rules, "normal force") if rules.normal_zero == "rest" else AS_RECORDED
+    normal_zero = (
+        _at_rest(recording, normal_raw, rules, "normal force") if rules.normal_zero == "rest" else AS_RECORDED
+    )
     normal = normal_raw - normal_zero.value
-    parts = [
-        steady_part(one, rules, recording.time, way, recording.tangential_force) for one in strokes
-    ]
+    parts = [steady_part(one, rules, recording.time, way, recording.tangential_force) for one in strokes]
     load = _typical_load(normal, parts)
     rows = [
         _judged(recording, number, one, part, rules, normal, load)
@@ -214,7 +214,9 @@ def _measured(
     friction, load = _of_row(row, forces)
     coefficient, _ = _coefficient(friction, load, rules)
     if not coefficient > 0:
-        return replace(row, left_out=f"a tangential force along the sliding (friction coefficient {coefficient:.3g})")
+        return replace(
+            row, left_out=f"a tangential force along the sliding (friction coefficient {coefficient:.3g})"
+        )
     mean_load = float(load.mean())
     error = error_of_mean(in_cycles(residuals, cycle), memory, step=forces.step / mean_load)
     of_load = error_of_mean(in_cycles(load - mean_load, cycle), memory)
@@ -227,7 +229,9 @@ def _measured(
     x = np.linspace(-0.5, 0.5, residuals.size)
     part = slice(row.begin, row.end)
     missing = row.end - row.begin - friction.size
-    static, remark = (float("nan"), "") if row.load_bin else static_peak(row, recording, forces.tangential, forces.normal)
+    static, remark = (
+        (float("nan"), "") if row.load_bin else static_peak(row, recording, forces.tangential, forces.normal)
+    )
     notes = [f"{missing} samples without value"] if missing else []
     if error.effective_samples < 5:
         notes.append(f"only {error.effective_samples:.2g} independent samples")

@@ -104,7 +104,9 @@ def preview_of(
 ) -> Preview:
     """Reduce forces (N) and way (m) of a recording, shape ``(n,)`` each, to what a picture can show."""
     starts = np.unique(np.linspace(0, recording.time.size, MOST_DRAWN, endpoint=False).astype(np.intp))
-    both = [np.stack((np.fmin.reduceat(f, starts), np.fmax.reduceat(f, starts))) for f in (tangential, normal)]
+    both = [
+        np.stack((np.fmin.reduceat(f, starts), np.fmax.reduceat(f, starts))) for f in (tangential, normal)
+    ]
     return Preview(recording.time[starts], both[0], both[1], None if way is None else way[starts])
 
 

@@ -45,9 +45,7 @@ def _longest_piece(values: FloatArray, begin: int, end: int) -> tuple[int, int]:
     block = max(1, (end - begin) // PIECES)
     count = (end - begin) // block
     with np.errstate(all="ignore"):
-        means = np.nanmean(
-            values[begin : begin + count * block].reshape(count, block), axis=1
-        )
+        means = np.nanmean(values[begin : begin + count * block].reshape(count, block), axis=1)
     known = np.isfinite(means)
     if known.sum() < 3 * SHORTEST:
         return begin, end
@@ -70,7 +68,9 @@ def _longest_piece(values: FloatArray, begin: int, end: int) -> tuple[int, int]:
     ]
     edges = candidates[int(np.argmin(scores))][1]
     longest = int(np.argmax(np.diff(edges)))
-    return begin + edges[longest] * block, end if edges[longest + 1] == count else begin + edges[longest + 1] * block
+    return begin + edges[longest] * block, end if edges[longest + 1] == count else begin + edges[
+        longest + 1
+    ] * block
 
 
 def _independent(y: FloatArray) -> float:

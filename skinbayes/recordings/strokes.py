@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,7 +116,7 @@ def _of_motion(recording: Recording, source: str, rules: Rules) -> list[Stroke]:
             f"further than {back:.4g} m one way. Expected a minimum_length under [strokes] of the recipe that strokes exceed, "
             'or from = "whole"'
         )
-    return [_stroke(way, start, stop) for start, stop in zip(turns[:-1], turns[1:], strict=True)]
+    return [_stroke(way, start, stop) for start, stop in itertools.pairwise(turns)]
 
 
 def _stroke(way: FloatArray, start: int, stop: int) -> Stroke:
@@ -171,8 +172,8 @@ def _of_unsigned_speed(recording: Recording, rules: Rules) -> list[Stroke]:
     found = [one for one in found if one.length >= REVERSAL * typical]
     if not found:
         raise InputError(
-            f"{recording.name}: no stroke found: the sliding speed, 95 % of it below {usual:.4g} m/s, is never above 30 % of that "
-            "for long enough"
+            f"{recording.name}: no stroke found: the sliding speed, 95 % of it below {usual:.4g} m/s, is never above 30 % of "
+            "that for long enough"
         )
     return found
 
@@ -185,8 +186,8 @@ def _of_force(recording: Recording) -> list[Stroke]:
     between = float(np.mean(state == 0))
     if not half > 0 or between > MOST_BETWEEN:
         raise InputError(
-            f"{recording.name}: no stroke found: the tangential force does not change between two levels ({100 * between:.0f} % of "
-            f"the samples are near the middle of its range from {low:.4g} N to {high:.4g} N). Expected a position or a "
+            f"{recording.name}: no stroke found: the tangential force does not change between two levels ({100 * between:.0f} % "
+            f"of the samples are near the middle of its range from {low:.4g} N to {high:.4g} N). Expected a position or a "
             'sliding_speed among the [columns] of the recipe, or from = "whole" under [strokes]'
         )
     last = np.maximum.accumulate(np.where(state != 0, np.arange(state.size), 0))

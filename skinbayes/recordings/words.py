@@ -21,17 +21,23 @@ def recording_sentences(one: ReducedRecording) -> list[str]:
         more = f" and {len(one.faulty) - 6} more" if len(one.faulty) > 6 else ""
         said.append(f"{len(one.faulty)} of {len(one.rows)} left out: {numbers}{more}.")
     if recipe := Counter(row.left_out for row in one.rows if row.by_recipe):
-        said.append("Not taken, as the recipe says: " + ", ".join(f"{n} ({why})" for why, n in recipe.items()) + ".")
+        said.append(
+            "Not taken, as the recipe says: " + ", ".join(f"{n} ({why})" for why, n in recipe.items()) + "."
+        )
     for name, zero in (("tangential", one.tangential_zero), ("normal", one.normal_zero)):
         if zero.how != "as recorded":
-            said.append(f"Zero of the {name} force {zero.value:.3g} ± {zero.standard_error:.2g} N ({zero.how}).")
+            said.append(
+                f"Zero of the {name} force {zero.value:.3g} ± {zero.standard_error:.2g} N ({zero.how})."
+            )
     independent = np.median([row.effective_samples for row in used])
     said.append(
         f"Friction forgets in {one.memory:.2g} s, so that a row of {np.median([row.samples for row in used]):.0f} samples holds "
         f"{independent:.0f} independent ones."
     )
     if one.period == one.period:
-        said.append(f"It repeats itself every {one.period:.2g} s, as in stick and slip or a vibration: cycles are taken as wholes.")
+        said.append(
+            f"It repeats itself every {one.period:.2g} s, as in stick and slip or a vibration: cycles are taken as wholes."
+        )
     if one.trend is not None:
         said += _trend_sentences(one)
     changes = np.array([row.change for row in used]) / np.array([row.friction_coefficient for row in used])
@@ -51,8 +57,8 @@ def _trend_sentences(one: ReducedRecording) -> list[str]:
         )
     if trend.scatter > DIFFERS * trend.explained:
         said.append(
-            f"Strokes scatter by {trend.scatter:.2g}, {trend.scatter / trend.explained:.1f} times what their errors explain: strokes "
-            "differ, which the noise of a model has to learn."
+            f"Strokes scatter by {trend.scatter:.2g}, {trend.scatter / trend.explained:.1f} times what their errors explain: "
+            "strokes differ, which the noise of a model has to learn."
         )
     return said
 

@@ -4,7 +4,9 @@ from skinbayes.report.calibration_page import write_calibration
 from skinbayes.report.comparison_page import write_comparison
 from skinbayes.report.digest import digest
 from skinbayes.report.joint_page import joint_digest, joint_remarks
+from skinbayes.report.methods import methods_text
 from skinbayes.report.page import write_report
+from skinbayes.report.paper_tables import paper_table
 from skinbayes.report.remarks import remarks
 from skinbayes.report.reproduction_page import write_reproduction
 
@@ -12,6 +14,8 @@ __all__ = [
     "digest",
     "joint_digest",
     "joint_remarks",
+    "methods_text",
+    "paper_table",
     "remarks",
     "write_calibration",
     "write_comparison",

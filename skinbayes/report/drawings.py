@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from skinbayes.fit.predicted import observables
-from skinbayes.phrases import plural
+from skinbayes.phrases import and_list, plural
 from skinbayes.plot import (
     plot_corner,
     plot_data,
@@ -110,10 +110,22 @@ def _data(fit: Fit) -> Iterator[Drawing]:
     yield Drawing(
         "data", plot_data, f"Data and model against {name}",
         f"Measured values against {name}, over what the fitted model predicts.",
-        "Dots are measured. Lines are medians of the model, bands around them hold 90 % of the posterior. Pale bars, where there "
-        "are any, hold 90 % of what repeated measurements would give: nine dots in ten should lie on them, on both sides all "
-        "along the axis.",
+        "Dots are measured. Lines are medians of the model, bands around them hold 90 % of the posterior (a darker one half). "
+        "Pale bars, where there are any, hold 90 % of what repeated measurements would give: nine dots in ten should lie on "
+        f"them, on both sides all along the axis.{_apart(fit, found[0])}",
     )  # fmt: skip
+
+
+def _apart(fit: Fit, abscissa: str) -> str:
+    """What the figure of the data shows beside theory and data."""
+    curves = curves_of(fit)
+    said = ""
+    if len(curves) == 1 and curves[0].column == abscissa:
+        said += " Curves contain what the theory misses; dashed lines are the theory alone."
+    if columns := group_columns(fit):
+        many = and_list([plural(column) for column in columns])
+        said += f" Small open dots, where there is a curve, are the data without the effects of {many}."
+    return said
 
 
 def _predictive(fit: Fit) -> Drawing:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from skinbayes.fit.people import Triple, population_findings
-from skinbayes.phrases import percent
+import numpy as np
+
+from skinbayes.fit.people import Contrast, PopulationFinding, Triple, population_findings
+from skinbayes.phrases import number, percent
 from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.symbols import spoken_name
 
@@ -13,10 +15,64 @@ if TYPE_CHECKING:
     from skinbayes.fit import Fit
 
 
+SURE = 0.95
+"""Probability from which on one person counts as changed."""
+
+
 def people_sentences(fit: Fit) -> list[str]:
     """What treatments do, then what the populations are; none without populations."""
     findings = population_findings(fit)
-    return [c.sentence() for one in findings for c in one.contrasts] + [one.sentence() for one in findings]
+    return [contrast_sentence(c) for one in findings for c in one.contrasts] + [
+        population_sentence(one) for one in findings
+    ]
+
+
+def contrast_sentence(contrast: Contrast) -> str:
+    """The contrast in words."""
+    low, middle, high = contrast.value
+    lower = contrast.probability_lower >= 0.5
+    probable = contrast.probability_lower if lower else 1.0 - contrast.probability_lower
+    name = spoken_name(contrast.parameter)
+    compared = f"{contrast.level} {'over' if contrast.kind == 'ratio' else 'less'} {contrast.reference}"
+    said = (
+        f"{name[:1].upper()}{name[1:]}, {compared} ({contrast.column}): {quantity(middle, contrast.unit)} for the median, with "
+        "90 % "
+        f"probability between {interval(low, high, contrast.unit, typical=middle, joint=' and ')}; it is "
+        f"{'lower' if lower else 'higher'} with {contrast.level} with a probability of {_probability(probable)}."
+    )
+    if contrast.people:
+        sure = sum(max(p, 1.0 - p) >= SURE for _, p in contrast.people.values())
+        said += (
+            f" Of {len(contrast.people)} taken one by one {sure or 'none'} {'is' if sure == 1 else 'are'} changed with a "
+            f"probability of {number(100 * SURE)} % or more."
+        )
+    return said
+
+
+def population_sentence(finding: PopulationFinding) -> str:
+    """The population in words."""
+    low, middle, high = finding.median
+    name = spoken_name(finding.parameter)
+    medians = [person.value[1] for person in finding.people]
+    if finding.scale_of == "ln":
+        factors = [float(np.exp(s)) for s in finding.scale]
+        apart = (
+            f"one {finding.by} differs from the median by a factor of {number(factors[1], 3)} "
+            f"({number(factors[0], 3)} to {number(factors[2], 3)}) or so"
+        )
+    else:
+        of = f" of its {finding.scale_of}" if finding.scale_of else ""
+        unit = "1" if finding.scale_of else finding.unit
+        apart = (
+            f"the standard deviation{of} between levels of {finding.by} is {quantity(finding.scale[1], unit)} "
+            f"({interval(finding.scale[0], finding.scale[2], unit, typical=finding.scale[1])})"
+        )
+    return (
+        f"{name[:1].upper()}{name[1:]}: {quantity(middle, finding.unit)} for the median {finding.by} (90 %: "
+        f"{interval(low, high, finding.unit, typical=middle)}); {apart}. The {len(medians)} have medians between "
+        f"{interval(min(medians), max(medians), finding.unit, joint=' and ')}; of how they differ "
+        f"{percent(finding.pooling)} is not told by the data."
+    )
 
 
 def people_rows(fit: Fit) -> list[tuple[str, str, str, str, str]]:
@@ -39,3 +95,9 @@ def people_rows(fit: Fit) -> list[tuple[str, str, str, str, str]]:
 def _value(value: Triple, unit: str) -> tuple[str, str]:
     low, middle, high = value
     return quantity(middle, unit), interval(low, high, unit, typical=middle)
+
+
+def _probability(value: float) -> str:
+    if value > 0.999:
+        return "more than 99.9 %"
+    return f"{100 * value:.1f} %"

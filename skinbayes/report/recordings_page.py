@@ -20,7 +20,16 @@ if TYPE_CHECKING:
     from skinbayes.files.reduced import ReducedRecordings
     from skinbayes.recordings import ReducedRecording
 
-HEADERS = ("recording", "recorded", "strokes", "left out", "friction", "90 % of rows", "normal force", "independent")
+HEADERS = (
+    "recording",
+    "recorded",
+    "strokes",
+    "left out",
+    "friction",
+    "90 % of rows",
+    "normal force",
+    "independent",
+)
 """Of the table of recordings."""
 
 READING = (
@@ -80,7 +89,11 @@ def _context(reduced: ReducedRecordings) -> dict[str, Any]:
     left_out = sum(len(one.faulty) for one in reduced.recordings)
     said = [
         f"{row_count(len(reduced.rows))} from {len(reduced.recordings)} recording{'s' if len(reduced.recordings) > 1 else ''}; "
-        + (f"{left_out} strokes were left out for faults." if left_out else "no stroke was left out for a fault.")
+        + (
+            f"{left_out} strokes were left out for faults."
+            if left_out
+            else "no stroke was left out for a fault."
+        )
     ]
     if len(recordings) > MOST_PICTURES:
         said.append(f"{MOST_PICTURES} recordings are drawn, those with faults first; the table has all.")

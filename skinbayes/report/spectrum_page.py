@@ -16,6 +16,7 @@ from skinbayes.report.figures import drawn
 from skinbayes.report.rendering import rendered, write_whole
 from skinbayes.roughness import rms_height, rms_slope
 from skinbayes.topography import HeightMap, MeasuredSurface, SurfaceCollection
+from skinbayes.topography.findings import surface_findings
 
 if TYPE_CHECKING:
     from skinbayes.fit import Fit
@@ -253,7 +254,7 @@ def _surface(one: MeasuredSurface, number: int) -> dict[str, Any]:
         "steps": [*analysis.surface.steps, _window(analysis.window)],
         "band": f"from {analysis.band.lower} to {analysis.band.upper}",
         "numbers": _numbers(one),
-        "findings": analysis.findings(),
+        "findings": surface_findings(analysis),
         "pictures": [drawn(one, drawing) for drawing in pictures],
     }
 

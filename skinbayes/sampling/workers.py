@@ -15,6 +15,9 @@ from skinbayes.errors import MachineError
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
+MOST_DEATHS = 3
+"""Of a worker with the same one of many tasks."""
+
 
 @contextmanager
 def sharing_out(
@@ -54,16 +57,16 @@ def done_by_processes(
     if processes == 1:
         yield from ((index, work(task)) for index, task in enumerate(tasks))
         return
-    with _crew(work, min(processes, len(tasks) or 1)) as crew:
+    with _crew(work, min(processes, len(tasks) or 1), forgiving=True) as crew:
         yield from _as_done(crew, tasks)
 
 
 @contextmanager
-def _crew(work: Callable[[Any], Any], processes: int) -> Iterator[list[_Worker]]:
+def _crew(work: Callable[[Any], Any], processes: int, forgiving: bool = False) -> Iterator[list[_Worker]]:
     crew: list[_Worker] = []
     try:
         for _ in range(processes):
-            crew.append(_Worker(work))
+            crew.append(_Worker(work, forgiving))
         yield crew
     finally:
         for worker in crew:
@@ -71,12 +74,16 @@ def _crew(work: Callable[[Any], Any], processes: int) -> Iterator[list[_Worker]]
 
 
 class _Worker:
-    """A process that does tasks; one that dies is started again, once, and gets the same task."""
+    """A process that does tasks; one that dies is started again and gets the same task.
 
-    def __init__(self, work: Callable[[Any], Any]) -> None:
+    It may die once; if it is ``forgiving``, three times with each task, since among thousands of tasks a machine kills some.
+    """
+
+    def __init__(self, work: Callable[[Any], Any], forgiving: bool) -> None:
         self._work = work
+        self._forgiving = forgiving
+        self._deaths = 0
         self._task: tuple[int, Any] | None = None
-        self._died = False
         self._start()
 
     def _start(self) -> None:
@@ -106,16 +113,19 @@ class _Worker:
         except (EOFError, OSError):
             self._again()
             return None
+        if self._forgiving:
+            self._deaths = 0
         return reply
 
     def _again(self) -> None:
         """Start the process once more, with the task it was to do: a result depends on its task alone."""
-        if self._died:
+        self._deaths += 1
+        if self._deaths > (MOST_DEATHS if self._forgiving else 1):
+            often = "again and again with one task" if self._forgiving else "twice"
             raise MachineError(
-                "A worker process of the sampler died twice, perhaps for want of memory: fewer --cores need less. "
+                f"A worker process of the sampler died {often}, perhaps for want of memory: fewer --cores need less. "
                 "(A script that samples on several cores does so under: if __name__ == '__main__'.)"
             )
-        self._died = True
         self.stop()
         self._start()
         if self._task is not None:

@@ -259,5 +259,7 @@ def _lower_factor(covariance: FloatArray) -> FloatArray:
     values, vectors = np.linalg.eigh(covariance / scale[:, np.newaxis] / scale)
     least = len(scale) * np.finfo(float).eps * max(float(values[-1]), 1.0)
     root = (vectors * np.sqrt(np.maximum(values, least))).T
-    triangle = np.asarray(np.linalg.qr(root, mode="r")).T  # the triangle of a square root needs no positive matrix
+    triangle = np.asarray(
+        np.linalg.qr(root, mode="r")
+    ).T  # the triangle of a square root needs no positive matrix
     return np.asarray(scale[:, np.newaxis] * triangle * np.sign(np.diagonal(triangle)))

@@ -23,7 +23,6 @@ from skinbayes.topography.artefacts import (
 from skinbayes.topography.band import Band, reliable_band
 from skinbayes.topography.bins import BINS_PER_DECADE
 from skinbayes.topography.directional_spectrum import DirectionalSpectrum, directional_spectrum_of
-from skinbayes.topography.findings import findings
 from skinbayes.topography.height_map import HeightMap, LineProfile
 from skinbayes.topography.line_spectrum import LINE_BINS_PER_DECADE, isotropic_spectrum, line_spectrum
 from skinbayes.topography.measured_spectrum import MeasuredSpectrum
@@ -75,10 +74,6 @@ class SurfaceAnalysis:
     def area_ratio_in_band(self) -> float:
         """True over nominal area of a Gaussian surface with the slope in the band, dimensionless."""
         return float(total_area_ratio(self.in_band.rms_slope))
-
-    def findings(self) -> list[str]:
-        """What a reader of the spectrum has to know, in sentences."""
-        return list(findings(self))
 
 
 def analyse_surface(

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skinbayes.topography.analysis import SurfaceAnalysis
 from skinbayes.topography.artefacts import MOST_SPIKES
 from skinbayes.topography.height_map import HeightMap, LineProfile
-
-if TYPE_CHECKING:
-    from skinbayes.topography.analysis import SurfaceAnalysis
 
 LARGEST_FIELD = 1.0
 """m: instruments that measure roughness see no more."""
@@ -26,8 +23,12 @@ OPEN_EDGES = 4.0
 """rms step across the edges over that between neighbours from which on a surface does not go on as it begins."""
 
 
-def findings(one: SurfaceAnalysis) -> Iterator[str]:
+def surface_findings(one: SurfaceAnalysis) -> list[str]:
     """Sentences about saturation, spikes, edges, filled pixels, trend, direction, and numbers that no surface has."""
+    return list(_findings(one))
+
+
+def _findings(one: SurfaceAnalysis) -> Iterator[str]:
     surface = one.surface
     yield from _implausible(one)
     for plateau in one.plateaus:

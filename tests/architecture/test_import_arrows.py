@@ -37,12 +37,14 @@ MAY_KNOW: dict[str, set[str]] = {
     "friction": {"errors", "arrays", "constants"},
     "wetting": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
     "lubrication": {"errors", "arrays", "constants", "emulation", "roughness", "contact", "friction"},
+    # force against time
+    "recordings": {"errors", "arrays"},
     # statistics that know nothing of skin
     "statistics": {"errors", "arrays"},
     "sampling": {"errors", "arrays", "defaults", *FILES, "statistics", "version"},
     "diagnose": {"errors", "arrays", "phrases", "statistics"},
     # where they meet
-    "files": {*WORDS, "sealed", "plugins", "units", "roughness", "topography", "statistics"},
+    "files": {*WORDS, "sealed", "plugins", "units", "roughness", "topography", "recordings", "statistics", "synonyms", "version"},
     "forward": {*WORDS, "plugins", "emulation", *PHYSICS},
     "problem": {*WORDS, "atomic", "units", "emulation", "roughness", "topography", "statistics", "diagnose", "files",
                 "forward", "version"},
@@ -50,18 +52,19 @@ MAY_KNOW: dict[str, set[str]] = {
             "version"},
     "comparison": {*WORDS, "units", "statistics", "problem", "fit"},
     "calibration": {*WORDS, *FILES, "statistics", "sampling", "problem", "fit"},
+    "each": {*WORDS, *FILES, "sampling", "files", "forward", "problem", "fit"},
     # the paper beside the physics
     "reproduce": {*WORDS, "units", "files", *PHYSICS},
     # faces
-    "plot": {*WORDS, "atomic", "units", "topography", "reproduce", "roughness", "statistics", "diagnose", "forward", "problem",
-             "fit", "comparison", "calibration"},
-    "report": {*WORDS, "atomic", "units", "roughness", "topography", "statistics", "diagnose", "files", "forward", "problem",
-               "fit", "comparison", "calibration", "plot", "reproduce"},
-    "cli": {*WORDS, "atomic", "units", "topography", "files", "forward", "problem", "fit", "comparison", "calibration", "plot",
-            "report", "reproduce", "version"},
+    "plot": {*WORDS, "atomic", "units", "topography", "reproduce", "roughness", "recordings", "statistics", "diagnose", "forward",
+             "problem", "fit", "comparison", "calibration"},
+    "report": {*WORDS, "atomic", "units", "roughness", "topography", "recordings", "statistics", "diagnose", "files", "forward",
+               "problem", "fit", "comparison", "calibration", "plot", "reproduce"},
+    "cli": {*WORDS, "atomic", "units", "topography", "recordings", "files", "forward", "problem", "fit", "each", "comparison",
+            "calibration", "plot", "report", "reproduce", "version"},
     "__main__": {"cli"},
     # the shop window names its goods but opens them when asked
-    "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit",
+    "skinbayes": {"version", "errors", "vocabulary", "statistics", "sampling", "files", "forward", "problem", "fit", "each",
                   "comparison", "calibration"},
 }  # fmt: skip
 """Floor to the floors it may import, besides itself."""
@@ -96,7 +99,7 @@ HOMES: dict[str, set[str]] = {
         "defaults",
         *FILES,
     },
-    "pandas": {"calibration", "files", "fit", "plot", "report"},
+    "pandas": {"calibration", "each", "files", "fit", "plot", "report"},
     "pint": {"units"},
     "PIL": {"files"},
     "platformdirs": {"emulation"},
@@ -106,6 +109,7 @@ HOMES: dict[str, set[str]] = {
     "scipy": {
         *PHYSICS,
         *STATISTICS,
+        "recordings",
         "files",
         "problem",
         "fit",

@@ -75,9 +75,10 @@ def numeric_names(found: Any) -> list[str]:
 def test_top_level_names() -> None:
     assert skinbayes.__all__ == ["Dataset", "Fit", "ForwardModel", "InputError", "JointFit", "JointProblem", "NoiseFamily",
                                  "Problem", "Quantity", "__version__", "build_joint_problem", "build_problem", "calibrate",
-                                 "compare", "emulated", "fit_spectrum", "load_dataset", "load_fit", "load_joint_fit",
-                                 "load_joint_problem", "load_problem", "register_engine", "register_forward_model",
-                                 "register_noise", "register_quantity", "sample"]  # fmt: skip
+                                 "compare", "emulated", "fit_each", "fit_spectrum", "load_dataset", "load_fit",
+                                 "load_joint_fit", "load_joint_problem", "load_problem", "problems_of_each",
+                                 "reduce_recordings", "register_engine", "register_forward_model", "register_noise",
+                                 "register_quantity", "sample"]  # fmt: skip
     for name in skinbayes.__all__:
         assert getattr(skinbayes, name) is not None
     assert dir(skinbayes) == sorted(skinbayes.__all__)

@@ -20,7 +20,7 @@ def read(folder: Path, text: str, **options: str) -> Dataset:
 
 
 @pytest.mark.parametrize(
-    "name", ["session", "sex", "operator", "cycle", "subject", "Hand (left/right)", "group", "日付"]
+    "name", ["session", "sex", "operator", "repeat", "subject", "Hand (left/right)", "group", "日付"]
 )
 @pytest.mark.parametrize("cells", [("1", "2"), ("a", "b")])
 def test_a_column_without_unit_holds_labels(name: str, cells: tuple[str, str], tmp_path: Path) -> None:

@@ -114,12 +114,12 @@ def test_a_missing_input_is_looked_for_among_the_others(tmp_path: Path) -> None:
 
 
 def test_columns_that_are_not_used_are_listed_once(tmp_path: Path) -> None:
-    text = TEXT.replace("group,", "group,cycle [1],sebum [ug/cm^2],layer_thicknes [um],skin_hydration [1],")
+    text = TEXT.replace("group,", "group,run [1],sebum [ug/cm^2],layer_thicknes [um],skin_hydration [1],")
     text = text.replace("control,", "control,31,1,20,40,").replace("treated,", "treated,32,2,21,50,")
     problem = bound(tmp_path, text)
     (note,) = data_notes(problem)
     assert note == (
-        "Columns of the data that the model does not use: cycle [1], sebum [ug/cm^2], layer_thicknes [um] (Did you mean "
+        "Columns of the data that the model does not use: run [1], sebum [ug/cm^2], layer_thicknes [um] (Did you mean "
         "'layer_thickness'?), skin_hydration [1]."
     )
     assert problem.check().sentences().count(note) == 1

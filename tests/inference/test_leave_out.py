@@ -160,7 +160,7 @@ family = "lognormal"
 noise_scale = 0.1
 """
 
-HEADER = "session [1],normal_force [N],friction_coefficient [1],operator\n"
+HEADER = "occasion [1],normal_force [N],friction_coefficient [1],operator\n"
 
 
 def sweep(folder: Path, forces: list[float]) -> Fit:
@@ -176,7 +176,7 @@ def test_rows_of_the_same_value_stay_together(tmp_path: Path) -> None:
     along = blocks(fit, "normal_force in 3")
     assert along.labels == ("1 N", "2 N", "3 N")
     assert along.member.tolist() == [2, 0, 0, 1, 0, 2, 1, 0]
-    assert blocks(fit, "session in 2").member.tolist() == [0, 0, 0, 0, 1, 1, 1, 1]
+    assert blocks(fit, "occasion in 2").member.tolist() == [0, 0, 0, 0, 1, 1, 1, 1]
     assert blocks(fit, "operator").labels == ("a", "b")
     assert blocks(fit, "normal_force").name == "normal_force in 3"
 

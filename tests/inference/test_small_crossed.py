@@ -197,6 +197,7 @@ def test_a_level_that_effects_stand_for_is_named(tmp_path) -> None:
         fit = SimpleNamespace(
             problem=problem,
             names=problem.names,
+            shown_names=problem.names,
             theta=lambda which="posterior": prior if which == "prior" else posterior,
             draws=lambda label: posterior[:, problem.names.index(label)],
             symbol=lambda label: label,

@@ -24,6 +24,7 @@ from skinbayes.topography import (
     remove_trend,
     surface_numbers,
 )
+from skinbayes.topography.findings import surface_findings
 from skinbayes.topography.trend import trend_share
 from skinbayes.topography.undefined import largest_defined_part
 
@@ -159,7 +160,7 @@ def test_saturated_areas_are_told_from_coarse_counts() -> None:
     high, low = find_plateaus(clipped)
     assert high.highest and high.height == 15.0 and not low.highest and low.height == -20.0
     assert high.share == pytest.approx(np.mean(coarse >= 15))
-    said = analyse_surface(a_map(np.minimum(surface.height, rms))).findings()
+    said = surface_findings(analyse_surface(a_map(np.minimum(surface.height, rms))))
     assert any("exactly the largest height" in sentence for sentence in said)
 
 
@@ -262,7 +263,7 @@ def test_a_mark_of_undefined_pixels_is_no_height() -> None:
 
 def test_what_no_surface_has_is_said() -> None:
     surface = cut(periodic_map(3, (96, 96)), 96, 96)
-    plain = " ".join(analyse_surface(surface).findings())
+    plain = " ".join(surface_findings(analyse_surface(surface)))
     height = surface.height.copy()
     height[50, 50] += 100 * height.std()
     open_edges = replace(surface, height=np.cumsum(surface.height, axis=1), periodic=True)
@@ -274,7 +275,7 @@ def test_what_no_surface_has_is_said() -> None:
         (open_edges, "times as much across the edges of the field as between neighbours"),
         (growing, "Under the window the rms height is"),
     ):
-        assert re.search(said, " ".join(analyse_surface(changed).findings())), said
+        assert re.search(said, " ".join(surface_findings(analyse_surface(changed)))), said
         assert not re.search(said, plain), said
 
 

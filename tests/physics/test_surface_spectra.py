@@ -23,6 +23,7 @@ from skinbayes.topography import (
     merge_spectra,
 )
 from skinbayes.topography.area_spectrum import spectrum_numbers
+from skinbayes.topography.findings import surface_findings
 from skinbayes.topography.periodogram import map_periodogram
 
 
@@ -145,7 +146,7 @@ def test_a_stretched_surface_has_its_degree_and_direction() -> None:
     ratio = found.power_spectral_density[steep][-1]
     assert np.degrees(found.angle[np.nanargmax(ratio)]) == pytest.approx(30, abs=8)
     assert np.nanmax(ratio) / np.nanmin(ratio) == pytest.approx(1.5**7.2, rel=0.4)  # (1.5²)^3.6
-    assert any("not isotropic: the slope along 30°" in s for s in analyse_surface(surface).findings())
+    assert any("not isotropic: the slope along 30°" in s for s in surface_findings(analyse_surface(surface)))
 
 
 def test_an_isotropic_surface_exceeds_the_chance_level_in_one_map_of_twenty() -> None:

@@ -31,8 +31,13 @@ def synthetic(
     keep = np.exp(-1 / (memory * rate)) if memory else 0.0
     remembered = lfilter([np.sqrt(1 - keep**2)], [1, -keep], rng.normal(size=samples + 5000))[5000:]
     normal = load * (1 + 0.03 * np.sin(2 * np.pi * t / 7)) + 0.01 * load * rng.normal(size=samples)
-    mu = friction * (1 + running_in * 0.5 ** (number / 3)) * (1 + drift * (share - 0.5)) + noise * friction * remembered
-    mu *= np.where(share < dwell, share / dwell, 1) * (1 + static * np.exp(-(((share - 1.3 * dwell) / 0.01) ** 2)))
+    mu = (
+        friction * (1 + running_in * 0.5 ** (number / 3)) * (1 + drift * (share - 0.5))
+        + noise * friction * remembered
+    )
+    mu *= np.where(share < dwell, share / dwell, 1) * (
+        1 + static * np.exp(-(((share - 1.3 * dwell) / 0.01) ** 2))
+    )
     if slip:
         periods = rng.uniform(0.1, 0.2, size=int(t[-1] / 0.1) + 2)
         ends, heights = np.cumsum(periods), slip * friction * rng.uniform(0.5, 1.5, size=periods.size)
