@@ -9,6 +9,7 @@ import numpy as np
 
 from skinbayes.arrays import FloatArray
 from skinbayes.files.population_block import DEVIATE, PopulationSpec
+from skinbayes.problem.populations import both_ways
 from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class Contrast:
     probability_lower : posterior probability that the treatment lowers the parameter of the median person
     spread : 5, 50 and 95 % quantiles of the standard deviation of the effect between people; None if it is the same for all
     people : the same of each person, and the probability that it is lowered
+    both_ways : how many were measured with and without it; with none the contrast is one between different people
     """
 
     parameter: str
@@ -65,6 +67,7 @@ class Contrast:
     probability_lower: float
     spread: Triple | None
     people: dict[str, tuple[Triple, float]]
+    both_ways: int
 
 
 @dataclass(frozen=True)
@@ -164,6 +167,7 @@ def _contrasts(fit: FitResult, spec: PopulationSpec) -> list[Contrast]:
     if contrast is None or fit.problem is None or fit.problem.populations is None:
         return []
     kind = "ratio" if spec.natural.kind == "log" else "difference"
+    both = both_ways(spec, fit.problem.conditions.labels)
     none, name = (1.0 if kind == "ratio" else 0.0), f"{spec.name}_{kind}"
     for _, parts in [one for one in fit.problem.populations.at(fit.problem.conditions) if one[0] is spec]:
         for part in parts:
@@ -184,6 +188,7 @@ def _contrasts(fit: FitResult, spec: PopulationSpec) -> list[Contrast]:
                     "1" if kind == "ratio" else QUANTITIES[spec.name].unit, _triple(values),
                     float((values < none).mean()), None if part.scale is None else _triple(_draws(fit, part.scale)),
                     {one: (_triple(draws), float((draws < none).mean())) for one, draws in people.items()},
+                    both[level],
                 )
             )  # fmt: skip
     return found

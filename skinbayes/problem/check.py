@@ -21,12 +21,16 @@ from skinbayes.phrases import row_count
 from skinbayes.problem.failures import explained
 from skinbayes.problem.load_powers import load_powers
 from skinbayes.problem.pieces import PIECE, named_in_pieces
+from skinbayes.problem.populations import both_ways
 from skinbayes.problem.possible import has_value, predicted_everywhere
 from skinbayes.problem.posterior import Posterior
 from skinbayes.problem.rows import data_notes
 from skinbayes.problem.statistical_model import StatisticalModel
 from skinbayes.problem.surface_numbers import surface_sentence
 from skinbayes.units import format_quantity
+
+FEW_PEOPLE = 5
+"""Levels below which the prior of the standard deviation between them decides (Gelman 2006, doi 10.1214/06-BA117A)."""
 
 DRAWS = 1000
 """Prior draws that are tried."""
@@ -175,17 +179,28 @@ def people_sentences(problem: StatisticalModel) -> list[str]:
                 f"{spec.name} has a population {what}. At the prior medians the data tell {known} of them apart from the "
                 f"others{'' if known == len(told) else '; of the rest the population speaks'}."
             )
-        if (contrast := spec.contrast) is not None:
-            labels = problem.conditions.labels
-            seen = {
-                level: set(labels[contrast.column][labels[spec.by] == level].tolist())
-                for level in set(labels[spec.by])
-            }
-            both = sum(contrast.reference in one and len(one) > 1 for one in seen.values())
-            rests = "rests on these" if both else "is one between groups"
+        labels = problem.conditions.labels
+        levels = len(set(labels[spec.by].tolist()))
+        if levels < FEW_PEOPLE and spec.scale.value is None:
             said.append(
-                f"{both} of {len(seen)} levels of {spec.by} were measured with and without the treatment '{contrast.column}', "
-                f"which acts on {spec.name}; the contrast {rests}."
+                f"{levels} levels of {spec.by} hardly tell how far others differ: {spec.scale.label} will rest on its prior; "
+                "state it with its source."
+            )
+        if any(group.level == spec.by for group in problem.spec.groups):
+            said.append(
+                f"{spec.by} is in [groups] and has a population of {spec.name}: if both act on the same rows alike, only "
+                "their sum is known; drop one of them."
+            )
+        for treatment, both in both_ways(spec, labels).items():
+            rests = (
+                "the contrast rests on these"
+                if both
+                else f"the contrast compares different levels of {spec.by}, and is no better known than how they differ anyway"
+            )
+            assert spec.contrast is not None
+            said.append(
+                f"{both} of {levels} levels of {spec.by} were measured with and without the treatment '{treatment}', "
+                f"which acts on {spec.name}; {rests}."
             )
     if problem.shared is not None:
         said.append(

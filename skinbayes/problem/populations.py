@@ -58,6 +58,18 @@ class Named(NamedTuple):
     unit: str
 
 
+def both_ways(spec: PopulationSpec, labels: Mapping[str, NDArray[np.str_]]) -> dict[str, int]:
+    """How many people were measured with each treatment and without any; empty if the parameter has no contrast."""
+    contrast = spec.contrast
+    if contrast is None:
+        return {}
+    seen: dict[str, set[str]] = {}
+    for who, treatment in zip(labels[spec.by].tolist(), labels[contrast.column].tolist(), strict=True):
+        seen.setdefault(str(treatment), set()).add(str(who))
+    without = seen.pop(contrast.reference)
+    return {treatment: len(who & without) for treatment, who in seen.items()}
+
+
 def population_parameters(
     specs: Sequence[PopulationSpec], conditions: Conditions, where: object
 ) -> tuple[ParameterSpec, ...]:

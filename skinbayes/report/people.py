@@ -40,6 +40,11 @@ def contrast_sentence(contrast: Contrast) -> str:
         f"probability between {interval(low, high, contrast.unit, typical=middle, joint=' and ')}; it is "
         f"{'lower' if lower else 'higher'} with {contrast.level} with a probability of {_probability(probable)}."
     )
+    if not contrast.both_ways:
+        return (
+            f"{said} Nobody was measured both with {contrast.level} and with {contrast.reference}: different people are "
+            "compared, and what the treatment does cannot be told from how they differ anyway."
+        )
     if contrast.people:
         sure = sum(max(p, 1.0 - p) >= SURE for _, p in contrast.people.values())
         said += (

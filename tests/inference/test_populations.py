@@ -253,6 +253,35 @@ def test_the_model_file_of_a_population_says_the_same(tmp_path: Path) -> None:
     assert_array_equal(again.log_posterior(theta), problem.log_posterior(theta))
 
 
+def test_what_the_design_of_a_panel_cannot_tell_is_said() -> None:
+    """Different people with and without, few people, and the same people as a group: at the check, and with the contrast."""
+    from skinbayes.report import remarks
+
+    people, treatment = np.repeat(["A", "B", "C", "D"], 2), np.repeat(["before", "after"], 4)
+    population = POPULATION | {"contrast": TREATED}
+
+    def said(treatment: np.ndarray) -> tuple[str, str]:
+        problem = constant_problem(people, np.linspace(0.4, 0.5, 8), population, treatment=treatment)
+        fit = sb.Fit.from_draws(problem, problem.draw_prior(np.random.default_rng(1), 100))
+        return " ".join(problem.check().sentences()), " ".join(remarks(fit))
+
+    checked, reported = said(treatment)
+    assert "0 of 4 levels of person were measured with and without" in checked
+    assert "different levels of person" in checked and "4 levels of person hardly tell how far" in checked
+    assert "Nobody was measured both with after and with before" in reported
+    treatment[1] = "after"
+    checked, reported = said(treatment)
+    assert "1 of 4 levels" in checked and "rests on these" in checked and "Nobody" not in reported
+    grouped = sb.build_problem(
+        "constant",
+        {"person": people, "friction_coefficient": np.linspace(0.4, 0.5, 8)},
+        parameters={LEVEL: {"by": "person", "population": POPULATION}},
+        groups={"person": {"scale": {"half_normal": 0.3}}},
+        noise={"family": "lognormal", "noise_scale": NOISE},
+    )
+    assert "only their sum is known" in " ".join(grouped.check().sentences())
+
+
 TREATED = {"column": "treatment", "reference": "before", "effect": {"normal": [0, 0.5]}}
 
 
