@@ -336,6 +336,12 @@ def _about_levels(new: NewConditions) -> list[str]:
             f"Not measured in the fit: {who}. Predictions of the model are those of the median {column}; those of measurements "
             f"contain how far one {column} differs from another."
         )
+    contrasts = {one.contrast.column: one.contrast for one in new.measured.spec.populations if one.contrast}
+    said += [
+        f"The rows have no {column}; they are predicted for '{contrast.reference}', the reference."
+        for column, contrast in contrasts.items()
+        if column not in new.problem.conditions.labels
+    ]
     return said
 
 

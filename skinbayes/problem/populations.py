@@ -140,7 +140,7 @@ def parts(spec: PopulationSpec, conditions: Conditions, known: Sequence[str] | N
         keys = [f"{spec.name}, {a}, {b}" for a, b in zip(by, nested, strict=True)]
         found.append(_part(None, spec.within_scale.label, keys, everywhere, everywhere, known))
     if (contrast := spec.contrast) is not None:
-        treatment = conditions.labels.get(contrast.column, np.full(rows, contrast.reference, dtype=str))
+        treatment = conditions.labels.get(contrast.column, np.full(rows, contrast.reference))
         for level in _levels(treatment):
             if level != contrast.reference:
                 here, label = treatment == level, f"{spec.name}, {level}"

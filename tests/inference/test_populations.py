@@ -240,6 +240,10 @@ def test_a_contrast_has_a_probability() -> None:
 
     (said,) = [one for one in remarks(fit) if "after over before" in one]
     assert "0.819" in said and "90.0 %" in said
+    without = fit.predict({"person": ["P1"], "normal_force [N]": [1.0]})
+    named = fit.predict({"person": ["P1"], "treatment": ["before"], "normal_force [N]": [1.0]})
+    assert_array_equal(without.of_model["friction_coefficient"], named.of_model["friction_coefficient"])
+    assert any("predicted for 'before', the reference" in note for note in without.notes)
     with pytest.raises(InputError, match="treatment 'third' was not measured"):
         fit.predict({"person": ["P1"], "treatment": ["third"], "normal_force [N]": [1.0]})
 
