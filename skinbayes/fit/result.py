@@ -10,7 +10,8 @@ import numpy as np
 
 from skinbayes.arrays import ArrayLike, FloatArray
 from skinbayes.errors import InputError
-from skinbayes.files.population_block import DEVIATE
+from skinbayes.files.population_block import DEVIATE, POPULATION_PARAMETERS
+from skinbayes.vocabulary import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas
@@ -275,7 +276,11 @@ class PosteriorResult:
         name, _, level = label.partition("[")
         block = self.provenance.get("derived_symbols", {}).get(name, "")
         symbol = block or str(self.groups["posterior"][name].attrs.get("symbol", name))
-        return f"{symbol} ({level.removesuffix(']')})" if level else symbol
+        level = level.removesuffix("]")
+        if name in POPULATION_PARAMETERS:  # of which parameter comes first
+            of, comma, rest = level.partition(", ")
+            level = f"{self.symbol(of) if of in self.names else QUANTITIES[of].symbol}{comma}{rest}"
+        return f"{symbol} ({level})" if level else symbol
 
     def to_arviz(self) -> Any:
         """The result as ArviZ knows it.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from skinbayes.files.population_block import POPULATION_PARAMETERS
 from skinbayes.vocabulary import LABELS, QUANTITIES
 
 if TYPE_CHECKING:
@@ -66,7 +67,10 @@ def spoken_name(label: str) -> str:
             name = pattern.sub(replacement, name)
     else:
         name = name.replace("_", " ")
-    return f"{name} ({level.removesuffix(']')})" if level else name
+    of, comma, rest = level.removesuffix("]").partition(", ")
+    if label.partition("[")[0] in POPULATION_PARAMETERS:
+        of = spoken_name(of)
+    return f"{name} ({of}{comma}{rest})" if level else name
 
 
 def figure_symbol(fit: FitResult, label: str) -> str:

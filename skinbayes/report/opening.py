@@ -14,6 +14,7 @@ from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.rows import varying
 from skinbayes.plot.symbols import spoken_name
 from skinbayes.plot.updates import fit_updates
+from skinbayes.report.people import contrast_values
 from skinbayes.vocabulary import QUANTITIES, lookup
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 MOST_ASKED = 2
 """Quantities named in the question."""
+
+MOST_TREATMENTS = 2
+"""Contrasts named in the answer."""
 
 
 def data_name(fit: Fit) -> str:
@@ -59,18 +63,28 @@ def question(fit: Fit) -> str:
 
 
 def answer(fit: Fit) -> str:
-    """What is known: the parameter that the data inform most, and the best known combination that the model names."""
+    """What is known: the parameter that the data inform most, and the best known combination that the model names.
+
+    Treatments come before both.
+    """
     physical = [update for label, update in fit_updates(fit).items() if not is_scatter(label)]
     learnt = sorted(
         (u for u in physical if u.verdict in ("updated", "contradicted")), key=lambda u: -u.contraction
     )
     products = sorted(single_products(fit), key=lambda label: _relative_width(fit, label))
+    if treatments := contrast_values(fit):  # what was asked, as a ratio and not as its logarithm
+        learnt = [update for update in learnt if update.name.partition("[")[0] != "contrast"]
+        rest = len(learnt) + len(products) + len(treatments[MOST_TREATMENTS:])
+        return _with_rest(treatments[:MOST_TREATMENTS], rest)
     values = [_value(fit, update.name) for update in learnt[:1]] + [
         _value(fit, label) for label in products[:1]
     ]
     if not values:
         return "These data tell next to nothing about any single parameter." if physical else ""
-    rest = len(learnt) + len(products) - len(values)
+    return _with_rest(values, len(learnt) + len(products) - len(values))
+
+
+def _with_rest(values: list[str], rest: int) -> str:
     return f"{'; '.join(values)}{f'; {rest} more below' if rest else ''}."
 
 

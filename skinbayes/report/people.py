@@ -27,15 +27,32 @@ def people_sentences(fit: Fit) -> list[str]:
     ]
 
 
+def contrast_values(fit: Fit) -> list[str]:
+    """What each treatment does to the median person, in a few words; none without treatments."""
+    return [
+        f"{_capital(spoken_name(one.parameter))}, {_compared(one)} = {quantity(one.value[1], one.unit)} (90 %: "
+        f"{interval(one.value[0], one.value[2], one.unit, typical=one.value[1])})"
+        for finding in population_findings(fit)
+        for one in finding.contrasts
+    ]
+
+
+def _capital(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}"
+
+
+def _compared(contrast: Contrast) -> str:
+    return f"{contrast.level} {'over' if contrast.kind == 'ratio' else 'less'} {contrast.reference}"
+
+
 def contrast_sentence(contrast: Contrast) -> str:
     """The contrast in words."""
     low, middle, high = contrast.value
     lower = contrast.probability_lower >= 0.5
     probable = contrast.probability_lower if lower else 1.0 - contrast.probability_lower
     name = spoken_name(contrast.parameter)
-    compared = f"{contrast.level} {'over' if contrast.kind == 'ratio' else 'less'} {contrast.reference}"
     said = (
-        f"{name[:1].upper()}{name[1:]}, {compared} ({contrast.column}): {quantity(middle, contrast.unit)} for the median, with "
+        f"{_capital(name)}, {_compared(contrast)} ({contrast.column}): {quantity(middle, contrast.unit)} for the median, with "
         "90 % "
         f"probability between {interval(low, high, contrast.unit, typical=middle, joint=' and ')}; it is "
         f"{'lower' if lower else 'higher'} with {contrast.level} with a probability of {_probability(probable)}."
@@ -73,7 +90,7 @@ def population_sentence(finding: PopulationFinding) -> str:
             f"({interval(finding.scale[0], finding.scale[2], unit, typical=finding.scale[1])})"
         )
     return (
-        f"{name[:1].upper()}{name[1:]}: {quantity(middle, finding.unit)} for the median {finding.by} (90 %: "
+        f"{_capital(name)}: {quantity(middle, finding.unit)} for the median {finding.by} (90 %: "
         f"{interval(low, high, finding.unit, typical=middle)}); {apart}. The {len(medians)} have medians between "
         f"{interval(min(medians), max(medians), finding.unit, joint=' and ')}; of how they differ "
         f"{percent(finding.pooling)} is not told by the data."

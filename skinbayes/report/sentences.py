@@ -29,12 +29,11 @@ def title_name(fit: Fit, label: str) -> str:
     """Name and symbol of a parameter or derived quantity, for the start of a sentence: ``"Yield stress (dry), σ_Y (dry)"``."""
     spoken, symbol = spoken_name(label), fit.symbol(label)
     spoken = spoken[:1].upper() + spoken[1:]
-    level = re.search(r"\[(.*)\]$", label)
-    plain = symbol.removesuffix(f" ({level.group(1)})") if level else symbol
+    of = re.search(r" (\(.*\))$", spoken) if "[" in label else None
+    plain = symbol.partition(" (")[0] if of else symbol
     if plain in (label, spoken):
         return spoken
-    head = spoken.removesuffix(f" ({level.group(1)})") if level else spoken
-    return f"{head} {plain}" + (f" ({level.group(1)})" if level else "")
+    return f"{spoken.removesuffix(of.group())} {plain} {of.group(1)}" if of else f"{spoken} {plain}"
 
 
 def with_symbols(fit: Fit, text: str) -> str:

@@ -240,6 +240,15 @@ def test_a_contrast_has_a_probability() -> None:
 
     (said,) = [one for one in remarks(fit) if "after over before" in one]
     assert "0.819" in said and "90.0 %" in said
+    from skinbayes.plot.symbols import spoken_name
+    from skinbayes.report.opening import answer
+
+    assert answer(fit).startswith("Typical friction coefficient, after over before = 0.819 (90 %")
+    from skinbayes.report.sentences import title_name
+
+    assert title_name(fit, CONTRAST) == "Contrast δ (typical friction coefficient, after)"
+    assert fit.symbol(CONTRAST) == "δ (μ_typ, after)"
+    assert spoken_name(SCALE) == "population scale (typical friction coefficient)"
     without = fit.predict({"person": ["P1"], "normal_force [N]": [1.0]})
     named = fit.predict({"person": ["P1"], "treatment": ["before"], "normal_force [N]": [1.0]})
     assert_array_equal(without.of_model["friction_coefficient"], named.of_model["friction_coefficient"])
