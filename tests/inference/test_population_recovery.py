@@ -10,7 +10,7 @@ from scipy import stats
 from skinbayes.sampling.ensembles import run_ensembles
 from skinbayes.sampling.options import SamplerOptions
 
-PANELS = 60
+PANELS = 100
 
 
 def shared_draws(seed: int, effect: float | None = None) -> tuple[np.ndarray, np.ndarray]:
