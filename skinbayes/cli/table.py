@@ -28,7 +28,9 @@ SUFFIXES = {".csv": "csv", ".tex": "latex", ".md": "markdown"}
 @overwrite_option
 @json_option
 def table(run: str, name: str, form: str | None, output: str | None, overwrite: bool, as_json: bool) -> None:
-    """Print a table of a run for a paper: parameters with priors, medians and 90 % intervals.
+    """Print a table of a run for a paper.
+
+    Parameters with their priors, medians and 90 % intervals.
 
     'derived' has the quantities that follow from the parameters, 'fixed' what was not inferred, 'predictions' each datum beside
     its prediction. Of several experiments these are named EXPERIMENT.derived and EXPERIMENT.predictions.

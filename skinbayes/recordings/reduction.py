@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -74,7 +77,13 @@ def reduce_recording(recording: Recording, rules: Rules) -> ReducedRecording:
         for number, (one, part) in enumerate(zip(strokes, parts, strict=True), 1)
     ]
     rows = _without_incomplete(rows, strokes)
-    zero = _tangential_zero(recording, rows, rules, normal)
+    _require_some(recording.name, rows)  # before the zero, which would lack both directions
+    try:
+        zero = _tangential_zero(recording, rows, rules, normal)
+    except InputError as error:
+        if why := _reasons(rows):
+            raise InputError(f"{error}. Left out were: {why}") from None
+        raise
     if rules.ramp_edges:
         rows = [cut for row in rows for cut in load_bins(row, normal, rules.ramp_edges)]
     good = [row for row in rows if not row.left_out]
@@ -114,12 +123,21 @@ def reduce_recording(recording: Recording, rules: Rules) -> ReducedRecording:
         },
         notes=_notes(recording),
     )
-    if not found.used:
-        reasons = sorted({row.left_out for row in found.rows})
-        raise InputError(
-            f"{recording.name}: none of {len(found.rows)} strokes can be used: {'; '.join(reasons[:4])}"
-        )
+    _require_some(recording.name, found.rows)
     return replace(found, trend=_trend(found, rules))
+
+
+def _require_some(name: str, rows: Sequence[FrictionRow]) -> None:
+    if all(row.left_out for row in rows):
+        raise InputError(f"{name}: none of {len(rows)} strokes can be used: {_reasons(rows)}")
+
+
+def _reasons(rows: Sequence[FrictionRow]) -> str:
+    """Why strokes were left out, with how many of them; the first few reasons."""
+    found = Counter(re.sub(r" \([^)]*\)", "", row.left_out) for row in rows if row.left_out)
+    return "; ".join(
+        f"{count} strokes, {why}" if count > 1 else f"1 stroke, {why}" for why, count in found.most_common(4)
+    )
 
 
 def _at_rest(recording: Recording, force: FloatArray, rules: Rules, name: str) -> ForceZero:

@@ -13,7 +13,7 @@ from small_models import same_draws
 from small_runs import after, small_problem, small_run, tree
 
 from skinbayes.errors import InputError, MachineError
-from skinbayes.fit import Fit, load_fit, run_directory
+from skinbayes.fit import Fit, load_fit, run_contents, run_directory
 from skinbayes.fit.run_directory import RunDirectory
 
 
@@ -91,7 +91,7 @@ def test_a_removed_result_is_noticed(tmp_path: Path, whole: Fit, monkeypatch: py
     problem = small_problem(tmp_path / "model")
     for place, moment in (
         (Fit, "summary"),
-        (run_directory, "result_image"),
+        (run_contents, "result_image"),
         (run_directory, "write_manifest"),
     ):
         folder, moved = tmp_path / moment, tmp_path / f"{moment}-moved"

@@ -11,6 +11,7 @@ import pytest
 from synthetic_recordings import GERMAN, TABS, recipe, synthetic, without_strokes, write_german, write_tabs
 
 import skinbayes as sb
+from skinbayes.errors import InputError
 from skinbayes.recordings import Recording, Rules, reduce_recording
 from skinbayes.recordings.averages import averaged, paired
 
@@ -202,3 +203,13 @@ def test_time_counts_from_the_wetting(tmp_path: Path) -> None:
     whole = sb.reduce_recordings({"drying": frame.assign(state=np.where(made.time < 20, "wet", "dry"))},
                                  plan | {"labels": {"state": {"name": "state"}}, "rows": {}})  # fmt: skip
     assert whole.dataset.columns["state"].tolist() == ["wet"] * 5 + ["dry"] * 5
+
+
+def test_strokes_none_of_which_can_be_used_say_why() -> None:
+    """Not that the zero of the force lacks directions, which is what follows from it."""
+    made = synthetic(1, **QUIET)
+    swapped = replace(made, tangential_force=made.normal_force, normal_force=made.tangential_force)
+    with pytest.raises(
+        InputError, match=r"no forward stroke beside .* Left out were: \d+ strokes, a normal force near zero"
+    ):
+        reduce_recording(swapped, BOTH)
