@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from skinbayes.files.population_block import POPULATION_PARAMETERS
 from skinbayes.vocabulary import LABELS, QUANTITIES
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def spoken_name(label: str) -> str:
     else:
         name = name.replace("_", " ")
     of, comma, rest = level.removesuffix("]").partition(", ")
-    if label.partition("[")[0] in POPULATION_PARAMETERS:
+    if of in QUANTITIES:  # of a population: the parameter that has it
         of = spoken_name(of)
     return f"{name} ({of}{comma}{rest})" if level else name
 
