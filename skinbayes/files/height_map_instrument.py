@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,8 +32,7 @@ class InstrumentFile(NamedTuple):
 
 def read_instrument(path: Path, stated: Scale, channel: str | None) -> InstrumentFile:
     """A channel of heights; InputError for whatever its reader raises on a damaged or foreign file."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with _quiet():
         try:
             import SurfaceTopography
         except ImportError:
@@ -41,13 +43,28 @@ def read_instrument(path: Path, stated: Scale, channel: str | None) -> Instrumen
         except InputError:
             raise
         except SurfaceTopography.Exceptions.CannotDetectFileFormat:
-            raise InputError(f"{path}: no known kind of file; expected {_PLAIN}") from None
+            raise InputError(
+                f"{path}: no known kind of file, or one that is cut off or damaged; expected {_PLAIN}"
+            ) from None
         except MemoryError:
             raise
         except Exception as error:  # readers of damaged files fail in many ways
             raise InputError(
                 f"{path}: SurfaceTopography cannot read it ({first_line(error)}); expected {_PLAIN}"
             ) from None
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Readers that try a file in turn neither warn nor log: one message says what came of it."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.disable(before)
 
 
 def _read(path: Path, reader: Any, stated: Scale, asked: str | None) -> InstrumentFile:

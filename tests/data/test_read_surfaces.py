@@ -1,5 +1,6 @@
 """Height maps and lines from files: what each kind gives, and one clear message for what cannot be used."""
 
+import logging
 import struct
 import sys
 import zipfile
@@ -140,7 +141,7 @@ BAD = {
     "all undefined.csv": (text_of(np.full((9, 12), np.nan)), GIVEN, "no known kind|none of the 108 pixels"),
     "comments.csv": ("# nothing\n", GIVEN, "no line of numbers"),
     "cut off.npy": (b"\x93NUMPY\x01\x00v\x00{'descr': '<f8'", GIVEN, "cannot be read as a NumPy array"),
-    "noise.opd": (np.random.default_rng(1).bytes(5001), {}, "no known kind of file; expected a file of an instrument"),
+    "noise.opd": (np.random.default_rng(1).bytes(5001), {}, "or one that is cut off or damaged; expected a file of"),
     "picture.tif": (b"II*\x00" + bytes(40), GIVEN, "cannot be read as a TIFF image"),
 }  # fmt: skip
 
@@ -230,6 +231,24 @@ def test_a_file_of_an_instrument_is_what_the_other_program_says(tmp_path: Path) 
     for share in (0.1, 0.5, 0.9):
         with pytest.raises(InputError, match=r"cut\.nc: .*expected a file of an instrument"):
             read_surface(write(tmp_path, "cut.nc", data[: int(share * len(data))]))
+
+
+def test_readers_that_try_a_file_say_nothing_themselves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    program = pytest.importorskip("SurfaceTopography", reason="its readers are what is tried here")
+    reader = program.open_topography
+
+    def noisy(path: str):
+        logging.getLogger("a reader").error("could not reshape data")
+        return reader(path)
+
+    monkeypatch.setattr(program, "open_topography", noisy)
+    with pytest.raises(InputError, match="cut off or damaged"):
+        read_surface(write(tmp_path, "noise.nms", bytes(range(1, 200))))
+    assert caplog.records == []
+    logging.getLogger("afterwards").error("is heard again")
+    assert len(caplog.records) == 1
 
 
 def test_a_file_whose_header_lies_about_its_size(tmp_path: Path) -> None:

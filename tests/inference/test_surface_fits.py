@@ -41,10 +41,10 @@ def posterior_draws(problem: sb.Problem, seed: int) -> np.ndarray:
         method="Nelder-Mead",
         options={"maxiter": 2000},
     ).x
-    walkers = best + 0.01 * rng.normal(size=(128, len(best)))
-    walkers = np.where(
-        np.isfinite(log_density(walkers))[:, None], walkers, best + 1e-4 * rng.normal(size=walkers.shape)
-    )
+    walkers, width = best + 0.01 * rng.normal(size=(128, len(best))), 0.01
+    while (outside := ~np.isfinite(log_density(walkers))).any():  # the best may lie at an end of a prior
+        width /= 2
+        walkers[outside] = best + width * rng.normal(size=(outside.sum(), len(best)))
     sampler = emcee.EnsembleSampler(*walkers.shape, log_density, vectorize=True)
     sampler.random_state = np.random.RandomState(seed).get_state()
     sampler.run_mcmc(walkers, 500, skip_initial_state_check=True)
