@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -176,10 +176,9 @@ def reduce_recordings(
             recording_of_frame(frames[str(name)], str(name), plan) if frames else read_recording(name, plan)
         )
         unique = known if short.count(known) == 1 else str(name)
-        object.__setattr__(recording, "name", str(name))  # messages have the path
-        reduced = reduce_recording(recording, plan.rules)
-        object.__setattr__(reduced, "name", unique)
-        found.append(reduced)
+        # messages have the path
+        reduced = reduce_recording(replace(recording, name=str(name)), plan.rules)
+        found.append(replace(reduced, name=unique))
         sources[unique] = "" if frames else _sha256(Path(str(name)))
         if progress is not None:
             progress(count, len(names))
