@@ -8,15 +8,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from skinbayes.errors import InputError
-from skinbayes.files.modelfile import ModelSpec, check_printable, find_model, read_block, read_parameters
+from skinbayes.files.modelfile import ModelSpec, find_model, read_block, read_parameters
 from skinbayes.files.modelschema import ExperimentBlock, JointBlock, ModelBlock
 from skinbayes.files.parameter_block import ParameterSpec
 from skinbayes.files.population_block import read_populations
 from skinbayes.files.stated_surface import StatedSurface, stated_about
-from skinbayes.files.toml_text import Places, explain, read_toml, shortened
+from skinbayes.files.toml_text import Places, read_tables, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
 
 EXPERIMENTS = "experiments"
@@ -85,16 +83,7 @@ def read_joint_model(content: Mapping[str, Any], path: Path, text: str) -> Joint
     path : the file, or a name that stands for it in messages
     text : the file as it stands, in which messages count lines
     """
-    try:
-        block = JointBlock.model_validate(content)
-    except ValidationError as error:
-        raise InputError(explain(error, path, text, JointBlock.model_fields)) from None
-    places = Places(path, text)
-    try:
-        check_printable(content, places)
-        return _read(block, path, text, places)
-    except InputError as error:
-        raise InputError(places.located(str(error))) from None
+    return read_tables(JointBlock, content, path, text, _read)
 
 
 def _read(block: JointBlock, path: Path, text: str, where: Places) -> JointSpec:

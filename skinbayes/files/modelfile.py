@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
 from skinbayes.arrays import FloatArray
 from skinbayes.errors import InputError
@@ -32,7 +31,7 @@ from skinbayes.files.scatter_block import (
     read_discrepancy,
 )
 from skinbayes.files.stated_surface import StatedSurface, stated_about
-from skinbayes.files.toml_text import Places, explain, read_toml, shortened
+from skinbayes.files.toml_text import read_tables, read_toml, shortened
 from skinbayes.plugins import installed_forward_models
 from skinbayes.vocabulary import LABELS, QUANTITIES, Quantity, suggestions
 
@@ -159,16 +158,7 @@ def read_model(content: Mapping[str, Any], path: Path, text: str) -> ModelSpec:
     InputError
         as :func:`load_model`
     """
-    try:
-        block = ModelBlock.model_validate(content)
-    except ValidationError as error:
-        raise InputError(explain(error, path, text, ModelBlock.model_fields)) from None
-    places = Places(path, text)
-    try:
-        check_printable(content, places)
-        return read_block(block, path, text, places)
-    except InputError as error:
-        raise InputError(places.located(str(error))) from None
+    return read_tables(ModelBlock, content, path, text, read_block)
 
 
 def read_block(block: ModelBlock, path: Path, text: str, where: Callable[..., str]) -> ModelSpec:
@@ -252,19 +242,6 @@ def _read_baseline_models(block: ModelBlock, path: Path, where: str) -> tuple[st
     if found and block.data is None:
         raise InputError(f"{where}: a model without data has nothing to be compared on; leave them out")
     return tuple(found)
-
-
-def check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
-    """Refuse control characters: what a model file says is written to terminals, pages and other files."""
-    if isinstance(item, dict):
-        for key, value in item.items():
-            check_printable(key, where, keys)
-            check_printable(value, where, (*keys, key))
-    elif isinstance(item, list):
-        for value in item:
-            check_printable(value, where, keys)
-    elif isinstance(item, str) and not "".join(item.split()).isprintable():
-        raise InputError(f"{where(*keys)}: found {item[:60]!r}; expected printable characters only")
 
 
 def _parameter_quantity(name: str, where: str) -> Quantity:

@@ -9,13 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from skinbayes.errors import InputError
-from skinbayes.files.modelfile import check_printable
 from skinbayes.files.parameter_block import label_column
 from skinbayes.files.recipe_schema import FileBlock, LabelColumn, RecipeBlock
-from skinbayes.files.toml_text import Places, explain, read_toml, toml_text
+from skinbayes.files.toml_text import read_tables, read_toml, toml_text
 from skinbayes.recordings import Rules
 from skinbayes.units import convert_array, parse_quantity
 from skinbayes.vocabulary import QUANTITIES, lookup, spread_of, suggestions
@@ -116,16 +113,7 @@ def load_recipe(recipe: str | Path | Mapping[str, Any]) -> Recipe:
     else:
         path = Path(recipe)
         content, text = read_toml(path)
-    try:
-        block = RecipeBlock.model_validate(content)
-    except ValidationError as error:
-        raise InputError(explain(error, path, text, RecipeBlock.model_fields)) from None
-    places = Places(path, text)
-    try:
-        check_printable(content, places)
-        return _read(block, path, text, places)
-    except InputError as error:
-        raise InputError(places.located(str(error))) from None
+    return read_tables(RecipeBlock, content, path, text, _read)
 
 
 def _read(block: RecipeBlock, path: Path, text: str, where: Callable[..., str]) -> Recipe:

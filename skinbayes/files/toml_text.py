@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 from unicodedata import normalize
 
 from skinbayes.errors import InputError
@@ -14,7 +14,10 @@ from skinbayes.files.reading import read_file
 from skinbayes.vocabulary import suggestions
 
 if TYPE_CHECKING:
-    from pydantic import ValidationError
+    from pydantic import BaseModel, ValidationError
+
+Block = TypeVar("Block", bound="BaseModel")
+Read = TypeVar("Read")
 
 LARGEST_FILE = 1_000_000
 """Bytes; a model file or a provenance file is a page or two of text."""
@@ -196,6 +199,55 @@ def explain(error: ValidationError, path: Path, text: str, known: Collection[str
         said = f"found {first['input']!r:.60}; {str(first['msg'])[0].lower()}{str(first['msg'])[1:]}"
     others = len(problems) - 1
     return f"{place}: {said}" + (f" (and {others} more problem{'s' if others > 1 else ''})" if others else "")
+
+
+def read_tables(
+    schema: type[Block],
+    content: Mapping[str, Any],
+    path: Path,
+    text: str,
+    read: Callable[[Block, Path, str, Places], Read],
+) -> Read:
+    """What the tables of a file say, by the schema that they have to fit and a function of the tables that fit it.
+
+    Parameters
+    ----------
+    schema : of the tables
+    content : tables and values, as TOML has them
+    path : the file, or a name that stands for it in messages
+    text : the file as it stands, in which messages count lines
+    read : makes the result of the tables, the path, the text and the places of keys
+
+    Raises
+    ------
+    InputError
+        Tables do not fit the schema, hold control characters, or ``read`` refuses them; names the line.
+    """
+    from pydantic import ValidationError
+
+    try:
+        block = schema.model_validate(content)
+    except ValidationError as error:
+        raise InputError(explain(error, path, text, schema.model_fields)) from None
+    places = Places(path, text)
+    try:
+        check_printable(content, places)
+        return read(block, path, text, places)
+    except InputError as error:
+        raise InputError(places.located(str(error))) from None
+
+
+def check_printable(item: Any, where: Any, keys: tuple[str, ...] = ()) -> None:
+    """Refuse control characters: what a model file says is written to terminals, pages and other files."""
+    if isinstance(item, dict):
+        for key, value in item.items():
+            check_printable(key, where, keys)
+            check_printable(value, where, (*keys, key))
+    elif isinstance(item, list):
+        for value in item:
+            check_printable(value, where, keys)
+    elif isinstance(item, str) and not "".join(item.split()).isprintable():
+        raise InputError(f"{where(*keys)}: found {item[:60]!r}; expected printable characters only")
 
 
 def _quoted(key: str) -> str:
