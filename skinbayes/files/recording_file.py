@@ -69,13 +69,13 @@ def recording_of_frame(frame: DataFrame, name: str, recipe: Recipe) -> Recording
             else -1
         )
         if not 0 <= place < len(known):
-            raise _no_column(name, column.name or f"number {column.number}", known, recipe)
+            raise _no_column(name, column.name or f"number {column.number}", known)
         cells = frame.iloc[:, place]
         if key in recipe.columns:
             values[key] = cells.to_numpy(dtype=np.float64)
         else:
-            names = tuple(dict.fromkeys(str(cell) for cell in cells))
-            changing[key] = names, np.array([names.index(str(cell)) for cell in cells], dtype=np.int32)
+            codes, names = cells.map(str).factorize()
+            changing[key] = tuple(names), codes.astype(np.int32)
     recording = _recording(name, recipe, values, {}, np.arange(1, len(frame) + 1))
     return replace(recording, name=name, labels=_labels(Path(name), recipe), changing=changing)
 
@@ -90,11 +90,11 @@ def _number(layout: Layout, column: Any) -> int:
     found = column_number(layout, column.name)
     if found is None:
         where = f"{layout.path}, line {layout.names_line}" if layout.names_line else str(layout.path)
-        raise _no_column(where, column.name, [name for name in layout.names if name], None)
+        raise _no_column(where, column.name, [name for name in layout.names if name])
     return found
 
 
-def _no_column(where: str, name: str, known: list[str], recipe: Recipe | None) -> InputError:
+def _no_column(where: str, name: str, known: list[str]) -> InputError:
     has = (
         ", ".join(quoted(one) for one in known[:20])
         or "no names above the numbers: give a number in place of a name"

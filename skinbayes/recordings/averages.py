@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from skinbayes.arrays import FloatArray
-from skinbayes.recordings.memory import FEWEST_SAMPLES, error_of_mean, memory_of
+from skinbayes.recordings.memory import FEWEST_SAMPLES, error_of_mean, memory_of, widening
 from skinbayes.recordings.rows import FrictionRow
 
 
@@ -56,7 +56,6 @@ def _joined(
     own = float(np.sqrt(np.sum((weights * np.array([row.own_error for row in rows])) ** 2)))
     if between and len(rows) > 1:
         own = max(own, _error_between(values))
-    tangential, normal = np.zeros(2), np.zeros(2)
     tangential = np.array([row.direction * row.zero_error for row in rows]) * weights
     normal = np.array([row.load_error for row in rows]) * weights
     of = np.asarray(recordings if len(recordings) else np.zeros(len(rows)))
@@ -100,9 +99,6 @@ def _joined(
 
 def _error_between(values: FloatArray) -> float:
     """Standard error of the mean from the scatter of strokes, to be used as that of a normal distribution."""
-    from scipy.special import ndtri, stdtrit
-
     if values.size >= 2 * FEWEST_SAMPLES:
         return error_of_mean(values, memory_of([values])).standard_error
-    widening = float(stdtrit(values.size - 1, 0.95) / ndtri(0.95))
-    return widening * float(np.std(values, ddof=1) / np.sqrt(values.size))
+    return widening(values.size - 1) * float(np.std(values, ddof=1) / np.sqrt(values.size))

@@ -154,8 +154,6 @@ def error_of_mean(residuals: FloatArray, memory: Memory, *, step: float = 0.0) -
     >>> round(found.standard_error, 2), found.effective_samples
     (0.1, 100.0)
     """
-    from scipy.special import ndtri, stdtrit
-
     count = residuals.size
     if count < FEWEST_SAMPLES:
         return MeanError(float("nan"), float("nan"), float("nan"))
@@ -164,8 +162,14 @@ def error_of_mean(residuals: FloatArray, memory: Memory, *, step: float = 0.0) -
     effective = count / memory.samples
     left_over = max(effective - 2.0, 1.0)
     freedom = max(1.0, 2.0 / (2.0 / left_over + 2.0 / memory.independent))
-    widening = float(stdtrit(freedom, 0.95) / ndtri(0.95))
-    error = widening * np.sqrt(variance / left_over)
+    error = widening(freedom) * np.sqrt(variance / left_over)
     if variance < step**2:
         error = np.hypot(error, step / np.sqrt(12.0))
     return MeanError(float(error), effective, float(np.sqrt(variance)))
+
+
+def widening(freedom: float) -> float:
+    """Ratio of the 95 % quantiles of Student's t with so many degrees of freedom and of the normal distribution."""
+    from scipy.special import ndtri, stdtrit
+
+    return float(stdtrit(freedom, 0.95) / ndtri(0.95))

@@ -95,12 +95,13 @@ def reduce_recording(recording: Recording, rules: Rules) -> ReducedRecording:
         way,
         _smallest_step(recording.tangential_force),
     )
-    residuals = {id(row): _residuals(row, forces, rules) for row in good}
-    period = period_of(list(residuals.values()))
+    friction = {id(row): _coefficient(*_of_row(row, forces), rules) for row in good}
+    residuals = [series for _, series in friction.values()]
+    period = period_of(residuals)
     cycle = 1 if np.isnan(period) else round(period)
-    memory = memory_of([in_cycles(one, cycle) for one in residuals.values()])
+    memory = memory_of([in_cycles(one, cycle) for one in residuals])
     rows = [
-        row if row.left_out else _measured(row, recording, forces, rules, residuals[id(row)], memory, cycle)
+        row if row.left_out else _measured(row, recording, forces, *friction[id(row)], memory, cycle)
         for row in rows
     ]
     rows = [row if row.left_out else _with_zero_error(row, zero, normal_zero) for row in rows]
@@ -222,15 +223,11 @@ def _coefficient(friction: FloatArray, load: FloatArray, rules: Rules) -> tuple[
     return coefficient, (friction - coefficient * load) / load.mean()
 
 
-def _residuals(row: FrictionRow, forces: _Forces, rules: Rules) -> FloatArray:
-    return _coefficient(*_of_row(row, forces), rules)[1]
-
-
 def _measured(
-    row: FrictionRow, recording: Recording, forces: _Forces, rules: Rules, residuals: FloatArray, memory: Memory, cycle: int,
+    row: FrictionRow, recording: Recording, forces: _Forces, coefficient: float, residuals: FloatArray, memory: Memory,
+    cycle: int,
 ) -> FrictionRow:  # fmt: skip
     friction, load = _of_row(row, forces)
-    coefficient, _ = _coefficient(friction, load, rules)
     if not coefficient > 0:
         return replace(
             row, left_out=f"a tangential force along the sliding (friction coefficient {coefficient:.3g})"
