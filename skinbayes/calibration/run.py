@@ -13,7 +13,7 @@ from skinbayes.calibration.simulation import RANKED_DRAWS, Simulated, Simulation
 from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, SEED
 from skinbayes.errors import InputError
 from skinbayes.fit.assemble import require_data
-from skinbayes.fit.result_folder import ResultFolder
+from skinbayes.fit.result_folder import ResultFolder, stated
 from skinbayes.sampling.many_tasks import done_tasks
 from skinbayes.sampling.options import whole
 
@@ -121,8 +121,7 @@ def calibrate(
         "fingerprints": [one.fingerprint for one in problems],
         "model_texts": [one.spec.text for one in problems],
         "seed": seed,
-        "options": {name: value if isinstance(value, str | int | float | bool) else repr(value)
-                    for name, value in simulation.options.items()},
+        "options": stated(simulation.options),
         "ranked_draws": RANKED_DRAWS,
     }  # fmt: skip
     with ExitStack() as stack:

@@ -85,6 +85,7 @@ def _files(given: tuple[str, ...]) -> list[str]:
 
 
 def _print(result: EachFit, directory: Path) -> None:
+    from skinbayes.each.result import TABLE
     from skinbayes.units import format_quantity
 
     table, units = result.table(), result.units()
@@ -105,7 +106,7 @@ def _print(result: EachFit, directory: Path) -> None:
         say(f"  {one.name}: {one.failure or one.verdict}")
     if len(open_) > MOST_LISTED:
         say(f"  and {len(open_) - MOST_LISTED} more, see the table")
-    say(f"results: {directory / 'results.csv'}")
+    say(f"results: {directory / TABLE}")
 
 
 def _document(result: EachFit, directory: Path) -> dict[str, Any]:

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import click
 
-from skinbayes.cli.new_file import refuse_existing, write_text
+from skinbayes.cli.new_file import format_of, refuse_existing, write_text
 from skinbayes.cli.options import json_option, overwrite_option
 from skinbayes.cli.output import print_json, say
-from skinbayes.cli.table import format_of
 
 SUFFIXES = {".txt": "text", ".md": "markdown", ".tex": "latex", ".bib": "bibtex"}
 

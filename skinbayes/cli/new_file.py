@@ -50,3 +50,21 @@ def write_columns(path: Path, columns: Mapping[str, Any]) -> None:
             )
             units[name] = QUANTITIES[known].unit if known else "1"
     write_text(path, csv_text(cells, units))
+
+
+def format_of(
+    form: str | None, output: str | None, known: tuple[str, ...], suffixes: dict[str, str], usual: str
+) -> str:
+    """The format asked for, else that of the name of the file, else the usual one."""
+    if form is not None:
+        if form.lower() not in known:
+            raise InputError(f"--format: found {form[:80]!r}; expected {' or '.join(known)}")
+        return form.lower()
+    if output is None:
+        return usual
+    suffix = Path(output).suffix.lower()
+    if suffix not in suffixes:
+        raise InputError(
+            f"-o {output}: found the kind {suffix!r}; expected a name that ends with {' or '.join(suffixes)}, or --format"
+        )
+    return suffixes[suffix]

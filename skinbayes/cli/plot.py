@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from skinbayes.cli.new_file import refuse_existing, write_bytes
+from skinbayes.cli.new_file import format_of, refuse_existing, write_bytes
 from skinbayes.cli.options import json_option, overwrite_option
 from skinbayes.cli.output import print_json, print_sentences, print_table, say
 from skinbayes.errors import InputError
@@ -97,20 +97,12 @@ def _form(form: str | None, output: str | None) -> str:
     """Kind of file: what was asked for, else what the name of the file says, else PDF."""
     from skinbayes.plot.journal import FORMATS
 
-    suffix = Path(output).suffix.removeprefix(".").lower() if output else ""
-    expected = " or ".join(FORMATS)
-    if form is not None:
-        found = form.lower().removeprefix(".")
-        if found not in FORMATS:
-            raise InputError(f"--format: found {form[:80]!r}; expected {expected}")
-        if suffix in FORMATS and suffix != found:
-            raise InputError(f"-o {output}: the name of a file of the kind {suffix}, but --format is {found}")
-        return found
-    if output and suffix not in FORMATS:
-        raise InputError(
-            f"-o {output}: found the kind {suffix!r}; expected a name that ends with .{' or .'.join(FORMATS)}, or --format"
-        )
-    return suffix or FORMATS[0]
+    kinds = {f".{kind}": kind for kind in FORMATS}
+    found = format_of(None if form is None else form.removeprefix("."), output, FORMATS, kinds, FORMATS[0])
+    written = None if output is None else kinds.get(Path(output).suffix.lower())
+    if written not in (None, found):
+        raise InputError(f"-o {output}: the name of a file of the kind {written}, but --format is {found}")
+    return found
 
 
 def _file_name(name: str) -> str:

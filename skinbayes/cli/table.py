@@ -7,10 +7,9 @@ from typing import Any
 
 import click
 
-from skinbayes.cli.new_file import refuse_existing, write_text
+from skinbayes.cli.new_file import format_of, refuse_existing, write_text
 from skinbayes.cli.options import json_option, overwrite_option
 from skinbayes.cli.output import print_json, say
-from skinbayes.errors import InputError
 
 SUFFIXES = {".csv": "csv", ".tex": "latex", ".md": "markdown"}
 
@@ -55,21 +54,3 @@ def table(run: str, name: str, form: str | None, output: str | None, overwrite: 
         say(made.text(form).rstrip("\n"))
     if made.note and form == "csv" and not as_json:
         say(f"skinbayes: {made.note}", err=True)
-
-
-def format_of(
-    form: str | None, output: str | None, known: tuple[str, ...], suffixes: dict[str, str], usual: str
-) -> str:
-    """The format asked for, else that of the name of the file, else the usual one."""
-    if form is not None:
-        if form.lower() not in known:
-            raise InputError(f"--format: found {form[:80]!r}; expected {' or '.join(known)}")
-        return form.lower()
-    if output is None:
-        return usual
-    suffix = Path(output).suffix.lower()
-    if suffix not in suffixes:
-        raise InputError(
-            f"-o {output}: found the kind {suffix!r}; expected a name that ends with {' or '.join(suffixes)}, or --format"
-        )
-    return suffixes[suffix]

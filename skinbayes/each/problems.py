@@ -63,8 +63,7 @@ def problems_of_each(
         return _with_one(_of_labels(base, _one(data), column), base)
     if table is not None:
         return _with_one(_of_settings(base, _one(data), Path(table)), base)
-    several = isinstance(data, Iterable) and not isinstance(data, str | Mapping)
-    files = [file for file in data if isinstance(file, str | Path)] if several else []  # type: ignore[union-attr]
+    files = [] if data is None or _is_one(data) else [one for one in data if isinstance(one, str | Path)]  # type: ignore[union-attr]
     if not files:
         raise InputError("expected a column, a table of settings, or a list of files as data")
     return _with_one(_of_files(base, files), base)
@@ -121,7 +120,7 @@ def share_preparation(problems: Iterable[Problem], progress: Any = None, cores: 
     for problem in problems:
         if "model" in problem.__dict__:
             continue
-        if problem.forward.prepare is None or not problem.free or problem.surface_prior is not None:
+        if problem.surface_prior is not None:
             problem.prepare(progress, cores)
             continue
         spectrum = problem.tables.spectrum
@@ -132,8 +131,10 @@ def share_preparation(problems: Iterable[Problem], progress: Any = None, cores: 
         )
         together.setdefault(key, []).append(problem)
     for alike in together.values():
-        hull = _hull([one.ranges() for one in alike])
-        model = alike[0].prepared_for_many(progress, cores, hull)
+        first = alike[0]
+        wanted = first.forward.prepare is not None and all(one.free for one in alike)
+        hull = _hull([one.ranges() for one in alike]) if wanted else None
+        model = first.prepared_for_many(progress, cores, hull)
         for problem in alike[1:]:
             problem.__dict__["model"] = model
 
@@ -153,8 +154,13 @@ def _hull(ranges: Sequence[TiedRanges]) -> TiedRanges:
     return TiedRanges(ends, tied)
 
 
+def _is_one(data: Any) -> bool:
+    """Whether it is one data set, not several files."""
+    return isinstance(data, str | Path | Mapping | Dataset) or hasattr(data, "columns")
+
+
 def _one(data: Any) -> Data | None:
-    if data is None or isinstance(data, str | Path | Mapping | Dataset) or hasattr(data, "columns"):
+    if data is None or _is_one(data):
         return data
     raise InputError("data: several files found; expected one data set with a column or a table of settings")
 

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 DRAWS = "draws"
 """Folder of the posterior draws inside the folder of the fits."""
 
+TABLE = "results.csv"
+"""File of the result table there."""
+
 RUNS = "runs"
 """Folder of run directories there."""
 

@@ -16,11 +16,11 @@ from skinbayes.arrays import FloatArray
 from skinbayes.atomic import write_atomically
 from skinbayes.defaults import EFFECTIVE_SAMPLE_SIZE, MOST_DRAWS, SEED
 from skinbayes.each.problems import share_preparation
-from skinbayes.each.result import DRAWS, RUNS, EachFit, OneFit
+from skinbayes.each.result import DRAWS, RUNS, TABLE, EachFit, OneFit
 from skinbayes.each.task import FitTask, Fitted, Task, seed_of
 from skinbayes.errors import InputError, cannot_write
 from skinbayes.fit.assemble import require_data
-from skinbayes.fit.result_folder import Kind, ResultFolder
+from skinbayes.fit.result_folder import Kind, ResultFolder, stated
 from skinbayes.problem.problem import Problem
 from skinbayes.sampling.many_tasks import done_tasks
 from skinbayes.sampling.options import whole
@@ -35,8 +35,6 @@ FITS: Kind[OneFit] = Kind(
     from_dict=OneFit.from_dict,
     again="fitted again",
 )
-
-TABLE = "results.csv"
 
 LONGEST_STEM = 60
 """Characters of the name of a file."""
@@ -112,14 +110,14 @@ def fit_each(
     for problem in usable.values():
         require_data(problem)
     first = next(iter(usable.values()))
+    options = {"ess": ess, **options}
     asked = {
         "models": [first.name],
         "seed": seed,
         "draws": draws,
         "runs": runs,
-        "options": {key: value if isinstance(value, str | int | float | bool) else repr(value)
-                    for key, value in {"ess": ess, **options}.items()},
-    }  # fmt: skip
+        "options": stated(options),
+    }
     found: dict[str, OneFit] = {}
     kept: dict[str, dict[str, FloatArray]] = {}
     with ExitStack() as stack:
@@ -138,7 +136,7 @@ def fit_each(
         missing = {name: problem for name, problem in usable.items() if name not in found}
         share_preparation(missing.values(), preparing, cores)
         tasks, models = _tasks(missing, seed)
-        work = FitTask(tuple(models), {"ess": ess, **options}, draws, runs)
+        work = FitTask(tuple(models), options, draws, runs)
         stems = _file_stems(problems)
         for _, fitted in done_tasks(work, tasks, cores, scheduler):
             one = replace(fitted.one, file=stems[fitted.one.name])

@@ -42,6 +42,14 @@ class Kind(Generic[Result]):
     again: str
 
 
+def stated(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a function as JSON can hold and compare them."""
+    return {
+        name: value if isinstance(value, str | int | float | bool) else repr(value)
+        for name, value in options.items()
+    }
+
+
 class ResultFolder(Generic[Result]):
     """A folder that holds many results of one kind; from beginning to end of its context nobody else writes there.
 
