@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import pandas
 
     from skinbayes.files.surface_draws import SurfaceDraws
+    from skinbayes.fit.people import PopulationFinding
     from skinbayes.fit.prior_sensitivity import PriorSensitivity
     from skinbayes.fit.surface_variance import SurfaceVariance
     from skinbayes.statistics.agreement import Agreement
@@ -33,6 +34,8 @@ class AskedFit(FitResult):
     repeats : observable to the misfit beside the scatter of rows of the same conditions, see
         :class:`~skinbayes.statistics.repeats.LackOfFit`; without those of which hardly any row repeats another, and empty if
         model or data are gone
+    population_findings : the median person, how people differ, each of them, and what a treatment does, for each parameter that
+        has a population; see ``skinbayes.fit.people.PopulationFinding``. Empty if the model is gone
 
     Examples
     --------
@@ -66,6 +69,13 @@ class AskedFit(FitResult):
         from skinbayes.fit.misfit import repeats
 
         return repeats(self)
+
+    @cached_property
+    def population_findings(self) -> tuple[PopulationFinding, ...]:
+        """What is to be said of each parameter with a population."""
+        from skinbayes.fit.people import population_findings
+
+        return population_findings(self)
 
     @cached_property
     def _sensitivities(self) -> dict[bool, PriorSensitivity]:
@@ -127,7 +137,7 @@ class AskedFit(FitResult):
         """
         from skinbayes.fit.people import people_table
 
-        return people_table(self)
+        return people_table(self.population_findings)
 
     def contrasts(self) -> pandas.DataFrame:
         """What treatments do to parameters that have a population.
@@ -146,7 +156,7 @@ class AskedFit(FitResult):
         """
         from skinbayes.fit.people import contrast_table
 
-        return contrast_table(self)
+        return contrast_table(self.population_findings)
 
     def surface(self) -> SurfaceDraws:
         """What this fit knows of the roughness, for another problem: ``build_problem(…, surface=fit.surface())``.

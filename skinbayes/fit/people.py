@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -104,11 +105,11 @@ class PopulationFinding:
         return asdict(self)
 
 
-def population_findings(fit: FitResult) -> list[PopulationFinding]:
+def population_findings(fit: FitResult) -> tuple[PopulationFinding, ...]:
     """What is to be said of each parameter with a population; none if the model is gone."""
     if fit.problem is None or fit.problem.populations is None:
-        return []
-    return [_finding(fit, spec) for spec in fit.problem.spec.populations]
+        return ()
+    return tuple(_finding(fit, spec) for spec in fit.problem.spec.populations)
 
 
 def _triple(draws: FloatArray) -> Triple:
@@ -194,7 +195,7 @@ def _contrasts(fit: FitResult, spec: PopulationSpec) -> list[Contrast]:
     return found
 
 
-def people_table(fit: FitResult) -> pandas.DataFrame:
+def people_table(findings: Sequence[PopulationFinding]) -> pandas.DataFrame:
     """Each person's value of each parameter with a population, see :meth:`skinbayes.Fit.people`."""
     import pandas
 
@@ -203,20 +204,20 @@ def people_table(fit: FitResult) -> pandas.DataFrame:
             "parameter": one.parameter, "level": person.level, "unit": one.unit,
             **dict(zip(("q05", "median", "q95"), person.value, strict=True)), "shrinkage": person.shrinkage,
         }
-        for one in population_findings(fit)
+        for one in findings
         for person in (*one.people, *one.nested)
     ]  # fmt: skip
     columns = ["parameter", "level", "unit", "q05", "median", "q95", "shrinkage"]
     return pandas.DataFrame(rows, columns=columns)
 
 
-def contrast_table(fit: FitResult) -> pandas.DataFrame:
+def contrast_table(findings: Sequence[PopulationFinding]) -> pandas.DataFrame:
     """What treatments do, see :meth:`skinbayes.Fit.contrasts`."""
     import pandas
 
     columns = ["parameter", "compared", "who", "kind", "unit", "q05", "median", "q95", "probability_lower"]
     rows: list[list[Any]] = []
-    for one in (contrast for finding in population_findings(fit) for contrast in finding.contrasts):
+    for one in (contrast for finding in findings for contrast in finding.contrasts):
         compared = f"{one.level}/{one.reference}"
         everyone = {"": (one.value, one.probability_lower), **one.people}
         rows += [

@@ -24,7 +24,7 @@ from skinbayes.vocabulary import QUANTITIES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from skinbayes.fit.result import FitResult
+    from skinbayes.fit.asked_fit import AskedFit
 
 TITLE = "People one by one"
 
@@ -34,7 +34,7 @@ MOST_SHOWN = 60
 LONGEST = 24
 
 
-def plot_people(fit: FitResult, width: str | None = None) -> Figure:
+def plot_people(fit: AskedFit, width: str | None = None) -> Figure:
     """Draw the value of each person, of each parameter that has a population.
 
     Parameters
@@ -48,11 +48,9 @@ def plot_people(fit: FitResult, width: str | None = None) -> Figure:
         One panel for each parameter, its levels ordered by median: bars hold 50 % and 90 % of the posterior. The band is the
         median of the population with its 90 % interval. A sentence if no parameter has a population.
     """
-    from skinbayes.fit.people import population_findings
-
     if fit.problem is None:
         return sentence_figure(fit, TITLE, GONE, width)
-    findings = population_findings(fit)
+    findings = fit.population_findings
     if not findings:
         return sentence_figure(fit, TITLE, "No parameter of the model has a population.", width)
     counts = [min(len(finding.people), MOST_SHOWN) for finding in findings]

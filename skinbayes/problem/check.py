@@ -153,12 +153,12 @@ def people_sentences(problem: StatisticalModel) -> list[str]:
         return []
     said, centre = [], problem.prior_medians()
     step = 0.1
-    moved = np.tile(centre, (problem.dimension + 1, 1))
-    np.fill_diagonal(moved[1:], centre + step)
     places = [i for i, p in enumerate(problem.free) if p.name == DEVIATE]
+    moved = np.tile(centre, (len(places) + 1, 1))
+    moved[range(1, len(moved)), places] += step
     with np.errstate(all="ignore"):
         positive = problem.predict_data(centre) > 0
-        at = scattered(problem, centre, np.asarray(positive))(moved[[0, *(1 + i for i in places)]])
+        at = scattered(problem, centre, np.asarray(positive))(moved)
     size = np.linalg.norm((at[1:] - at[0]) / step, axis=1)
     names = [problem.names[i] for i in places]
     for spec, parts in found.at(problem.conditions):

@@ -174,7 +174,8 @@ def _part(
 ) -> Part:
     labels = [f"{DEVIATE}[{key}]" for key in keys]
     used = dict.fromkeys(label for label, on in zip(labels, deviating, strict=True) if on)
-    deviates = tuple(label for label in used if known is None or label in set(known))
+    among = None if known is None else set(known)
+    deviates = tuple(label for label in used if among is None or label in among)
     place = {label: i for i, label in enumerate(deviates)}
     level = np.array(
         [place.get(label, -1) if on else -1 for label, on in zip(labels, deviating, strict=True)]
@@ -239,9 +240,8 @@ class Populations:
                     place = place + np.where(part.active, self._column(theta, part.location), 0.0)
                 if part.scale is not None and part.deviates:
                     # a column of zeros last, for rows without a deviate
-                    scores = theta[:, [self._places[label] for label in part.deviates]]
-                    scores = np.concatenate([scores, np.zeros((len(theta), 1))], axis=1)
-                    place = place + self._column(theta, part.scale) * scores.take(part.level, axis=1)
+                    scores = np.concatenate([self._scores(theta, part), np.zeros((len(theta), 1))], axis=1)
+                    place = place + scores.take(part.level, axis=1)
             found[spec.name] = np.ascontiguousarray(natural.inverse(place))
         return found
 

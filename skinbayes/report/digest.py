@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from skinbayes.fit.people import population_findings
 from skinbayes.fit.predicted import row_names
 from skinbayes.plot.updates import fit_updates
 from skinbayes.problem.surface_numbers import surface_numbers
@@ -48,7 +47,7 @@ def digest(fit: Fit, with_priors: bool = True) -> dict[str, Any]:
         **({"prior_sensitivity": brief_sensitivity(fit)} if with_priors else {}),
         "validity": {flag.name: flag.to_dict(names) for flag in flags(fit)},
         "groups": {finding.column: finding.to_dict() for finding in group_findings(fit)},
-        "populations": {finding.parameter: finding.to_dict() for finding in population_findings(fit)},
+        "populations": {finding.parameter: finding.to_dict() for finding in fit.population_findings},
         "discrepancy": {finding.column: finding.to_dict() for finding in discrepancy_findings(fit)},
         "ridges": [asdict(ridge) for ridge in posterior_ridges(fit)],
         "priors": {

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skinbayes.fit.people import Contrast, PopulationFinding, Triple, population_findings
+from skinbayes.fit.people import Contrast, PopulationFinding, Triple
 from skinbayes.phrases import number, percent
 from skinbayes.plot.numbers import interval, quantity
 from skinbayes.plot.symbols import spoken_name
@@ -21,7 +21,7 @@ SURE = 0.95
 
 def people_sentences(fit: Fit) -> list[str]:
     """What treatments do, then what the populations are; none without populations."""
-    findings = population_findings(fit)
+    findings = fit.population_findings
     return [contrast_sentence(c) for one in findings for c in one.contrasts] + [
         population_sentence(one) for one in findings
     ]
@@ -32,7 +32,7 @@ def contrast_values(fit: Fit) -> list[str]:
     return [
         f"{_capital(spoken_name(one.parameter))}, {_compared(one)} = {quantity(one.value[1], one.unit)} (90 %: "
         f"{interval(one.value[0], one.value[2], one.unit, typical=one.value[1])})"
-        for finding in population_findings(fit)
+        for finding in fit.population_findings
         for one in finding.contrasts
     ]
 
@@ -100,7 +100,7 @@ def population_sentence(finding: PopulationFinding) -> str:
 def people_rows(fit: Fit) -> list[tuple[str, str, str, str, str]]:
     """Who, what, median, 90 % interval, and how much of it is the population's, for each level and contrast."""
     rows = []
-    for finding in population_findings(fit):
+    for finding in fit.population_findings:
         name = spoken_name(finding.parameter)
         for person in (*finding.people, *finding.nested):
             shrinkage = percent(min(person.shrinkage, 1.0))
