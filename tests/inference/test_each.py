@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import multiprocessing
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -179,16 +178,6 @@ def test_a_table_of_films_is_made_once() -> None:
     for one in usable:
         for name, (low, high) in one.ranges().items():
             assert built[0][name][0] <= low and high <= built[0][name][1]
-
-
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0",
-        local_directory=str(tmp_path_factory.mktemp("dask")),
-    ) as made:  # fmt: skip
-        yield made
 
 
 def test_processes_and_a_scheduler_give_the_same_numbers(cluster: Any) -> None:
